@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+
+namespace bandvox {
+
+/// Bytes that this process could still take without being killed or swapping: what the kernel
+/// counts as available, or less where a control group limits it.
+std::int64_t availableMemory();
+
+/// The most bytes of memory that this process has held so far.
+std::int64_t peakMemory();
+
+/// Throws Error(ErrorKind::Memory), naming both numbers and `what`, if `bytes` is more than is
+/// available now.
+void requireMemory(double bytes, const char* what);
+
+}  // namespace bandvox

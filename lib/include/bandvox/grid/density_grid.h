@@ -1,0 +1,56 @@
+#pragma once
+
+#include <bandvox/core/progress.h>
+
+#include <openvdb/openvdb.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace bandvox {
+
+/// What a density grid says of itself, stored as grid metadata named `bandvox_<member>` in
+/// snake_case (bandvox_version, bandvox_closure_error, ...).
+struct DensityMetadata {
+    std::string version;          ///< of the library that made it
+    std::string source;           ///< file or shape it was made from
+    std::string route = "exact";  ///< "exact" or "sampled"
+    double order = 0;             ///< of the exponential filter
+    double cutoff = 0;            ///< of the exponential filter, cycles per voxel
+    double oversampling = 0;      ///< R/N of the sampled route; 0 for the exact route
+    double iso = 0.5;             ///< density that is the surface
+    double tolerance = 0;         ///< error asked for, density
+    double closureError = 0;      ///< error measured while writing, density
+    double sourceVolume = 0;      ///< enclosed by the source, world units³
+    double gridVolume = 0;        ///< integral of the density, world units³
+    int holesCapped = 0;          ///< boundary loops of the source that were closed
+    bool clamped = false;         ///< values were limited to [0, 1]
+};
+
+/// Stores `metadata` in `grid`, replacing what was there.
+void setDensityMetadata(openvdb::GridBase& grid, const DensityMetadata& metadata);
+
+/// What `grid` says of itself, or nothing if it was not made by this library.
+std::optional<DensityMetadata> densityMetadata(const openvdb::GridBase& grid);
+
+/// Integral of the density: the sum of all active values times a voxel's volume, world units³.
+/// Summed in one order, so the same for any number of threads.
+double densityIntegral(const openvdb::FloatGrid& grid);
+
+/// How a VDB file is written.
+struct VdbWriteOptions {
+    bool half = false;  ///< 16-bit values
+    enum class Compression { Blosc, Zip, None } compression = Compression::Blosc;
+};
+
+/// Writes grids to a .vdb file, whole or not at all.
+/// Throws Error(ErrorKind::Runtime) if it cannot be written.
+void writeVdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
+              const VdbWriteOptions& options = {});
+
+/// Reads all grids of a .vdb file. Throws Error(ErrorKind::Input) if it is missing, not a VDB,
+/// or damaged.
+openvdb::GridPtrVec readVdb(const std::filesystem::path& path);
+
+}  // namespace bandvox

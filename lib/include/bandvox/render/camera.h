@@ -1,0 +1,54 @@
+#pragma once
+
+#include <openvdb/Types.h>
+#include <openvdb/math/BBox.h>
+
+#include <optional>
+
+namespace bandvox {
+
+/// A straight line of sight, world units; `direction` has length 1.
+struct Ray {
+    openvdb::Vec3d origin;
+    openvdb::Vec3d direction;
+};
+
+/// Where a picture is taken from. Words and units are those of vdb_render.
+struct CameraOptions {
+    enum class Projection { Perspective, Orthographic } projection = Projection::Perspective;
+    std::optional<openvdb::Vec3d> eye;     ///< world; default: chosen so that the object fits
+    std::optional<openvdb::Vec3d> lookat;  ///< world; default: the middle of the object's box
+    openvdb::Vec3d up{0, 1, 0};            ///< world direction that points up in the picture
+    openvdb::Vec3d from{0.55, 0.35, 1};    ///< direction from the object to a chosen eye
+    double focal = 50;                     ///< focal length, mm; > 0 (perspective)
+    double aperture = 41.2136;             ///< width of the film, mm; > 0 (perspective)
+    double frame = 0;                      ///< width of the view, world; 0 fits (orthographic)
+};
+
+/// A camera for pictures of `width` × `height` pixels.
+class Camera {
+  public:
+    /// `object` is the box to frame, world units, not empty.
+    /// Throws Error(ErrorKind::Usage) if the options do not define a view: eye and lookat the
+    /// same, up along the view, a length that is not positive.
+    Camera(const CameraOptions& options, int width, int height, const openvdb::BBoxd& object);
+
+    /// The line of sight through a place of the picture, in pixels from its top left corner.
+    Ray ray(double x, double y) const;
+
+    /// Distance of a world point from the plane through the eye, along the view.
+    double depth(const openvdb::Vec3d& point) const;
+
+    const openvdb::Vec3d& eye() const { return mEye; }
+    const openvdb::Vec3d& forward() const { return mForward; }
+    const openvdb::Vec3d& right() const { return mRight; }
+    const openvdb::Vec3d& upward() const { return mUpward; }
+
+  private:
+    CameraOptions::Projection mProjection;
+    openvdb::Vec3d mEye, mForward, mRight, mUpward;
+    double mPixelsWide, mPixelsHigh;
+    double mHalfWidth, mHalfHeight;  // at distance 1 (perspective), or of the view
+};
+
+}  // namespace bandvox

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <bandvox/core/progress.h>
+#include <bandvox/render/camera.h>
+#include <bandvox/render/image.h>
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <optional>
+
+namespace bandvox {
+
+/// How a density is drawn.
+struct RenderOptions {
+    int width = 1024;             ///< pixels; 1 to 65536
+    int height = 1024;            ///< pixels; 1 to 65536
+    int samples = 1;              ///< lines of sight per pixel, on a regular grid; ≥ 1
+    CameraOptions camera;
+    std::optional<double> iso;    ///< default: what the grid's metadata says, else 0.5
+    openvdb::Vec3d light{-0.4, 0.7, 0.8};    ///< towards the light, in camera axes (right, up, back)
+    openvdb::Vec3d color{0.8, 0.8, 0.8};     ///< linear, of the surface
+    double ambient = 0.1;                    ///< light from everywhere, 0 to 1
+    std::optional<openvdb::Vec3d> background;  ///< linear; default: transparent
+};
+
+/// A picture and what it took.
+struct RenderResult {
+    Image image;
+    std::int64_t rays = 0;
+    std::int64_t hits = 0;
+};
+
+/// Draws the surface {density = iso} with Lambert shading. Each line of sight is bracketed on
+/// the grid and refined on the band-limited reconstruction; the normal is its gradient.
+///
+/// Figure 7 and section 3.2 of Chiba, Aoki, Saito (1990), with signed frequencies.
+/// Throws Error(ErrorKind::Usage) for options out of range, Error(ErrorKind::Input) if the grid
+/// has no active voxel or is not a density, Error(ErrorKind::Result) if nothing is seen.
+RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptions& options = {},
+                            Progress& progress = silentProgress());
+
+}  // namespace bandvox

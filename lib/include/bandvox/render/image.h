@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace bandvox {
+
+/// A picture, and what was seen at each of its pixels. Rows from the top.
+struct Image {
+    int width = 0;
+    int height = 0;
+    std::vector<float> color;     ///< [height][width][4] linear R G B, A; colour times coverage
+    std::vector<float> depth;     ///< [height][width] world units along the view; inf where nothing
+    std::vector<float> normal;    ///< [height][width][3] world, unit; 0 where nothing
+    std::vector<float> position;  ///< [height][width][3] world; 0 where nothing
+    std::vector<std::pair<std::string, std::string>> metadata;
+};
+
+/// Extensions that writeImage takes, lower case with the dot.
+bool isImageFile(const std::filesystem::path& path);
+
+/// Writes a picture, whole or not at all. `.png`: 8-bit sRGB with alpha. `.exr`: half R G B A,
+/// and float Z, N.X N.Y N.Z, P.X P.Y P.Z.
+/// Throws Error(ErrorKind::Runtime) if it cannot be written, Error(ErrorKind::Usage) for another
+/// extension.
+void writeImage(const std::filesystem::path& path, const Image& image);
+
+}  // namespace bandvox

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <bandvox/core/progress.h>
+#include <bandvox/source/mesh.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace bandvox {
+
+/// How a mesh is made the boundary of a solid.
+struct CloseMeshOptions {
+    /// Points nearer than this are one, relative to the largest coordinate; 0 welds equal points
+    /// only. The default is two units in the last place of a float.
+    double weldTolerance = 2.4e-7;
+};
+
+/// One boundary loop that was capped.
+struct CappedHole {
+    std::size_t edges = 0;   ///< of the loop
+    double perimeter = 0;    ///< world units
+    openvdb::Vec3d center;   ///< mean of its points, world units
+};
+
+/// What was found, and what was done about it.
+struct CloseMeshReport {
+    std::size_t pointsWelded = 0;         ///< points that fell together with another
+    std::size_t degenerateTriangles = 0;  ///< no area; dropped
+    std::size_t components = 0;           ///< connected pieces
+    std::size_t trianglesFlipped = 0;     ///< to agree with their neighbours, or turned outward
+    std::size_t componentsTurned = 0;     ///< pieces that were inside out
+    std::size_t nonManifoldEdges = 0;     ///< edges of more than two triangles
+    std::vector<CappedHole> holes;        ///< in order of falling perimeter
+    std::vector<std::string> warnings;    ///< in words, for the user
+};
+
+/// A closed mesh, and how it came about.
+struct ClosedMesh {
+    Mesh mesh;  ///< every directed edge has its opposite, counted with multiplicity
+    CloseMeshReport report;
+};
+
+/// Makes a mesh the boundary of a solid: welds points, makes the orientation of each piece
+/// consistent, caps boundary loops by fans about their centre, turns pieces outward, drops
+/// triangles without area.
+///
+/// A piece inside another keeps its orientation relative to the outermost piece around it, so
+/// cavities stay cavities in a mesh that is inside out as a whole.
+/// Throws Error(ErrorKind::Input) if nothing is left, Error(ErrorKind::Result) if what is left
+/// encloses no volume (a flat mesh).
+ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options = {},
+                     Progress& progress = silentProgress());
+
+}  // namespace bandvox

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <bandvox/spectral/exponential_filter.h>
+
+#include <vector>
+
+namespace bandvox {
+
+/// The compact kernel ψ that carries weights between arbitrary places and the lattice: the
+/// Kaiser-Bessel window's partner with a closed transform,
+///     ψ(x) = I_0(β √(1 - (2x/w)²)) · c  for |x| < w/2, else 0,
+///     ψ̂(k) = sinh(√(β² - (πwk)²)) / √(β² - (πwk)²) · β / sinh β,
+/// scaled so that ψ̂(0) = 1.
+///
+/// J. F. Kaiser, R. W. Schafer: "On the use of the I0-sinh window for spectrum analysis" (1980);
+/// its use for non-uniform transforms: D. Potts, G. Steidl (2003).
+class SpreadingKernel {
+  public:
+    /// Of all kernels of that kind, the narrowest whose error under `filter` is at most
+    /// `tolerance` (see aliasError). Throws Error(ErrorKind::Usage) if none of up to
+    /// kMaximumWidth voxels reaches it.
+    static SpreadingKernel forFilter(const ExponentialFilter& filter, double tolerance);
+
+    /// `width` in voxels, 2 to kMaximumWidth; `beta` > 0.
+    SpreadingKernel(int width, double beta);
+
+    int width() const { return mWidth; }
+    double beta() const { return mBeta; }
+
+    /// ψ(x), x in voxels, by its formula.
+    double operator()(double x) const;
+    /// ψ'(x), per voxel.
+    double derivative(double x) const;
+    /// ψ̂(k), k in cycles per voxel.
+    double transform(double k) const;
+
+    /// The weights of the `width()` lattice nodes around a place: weights[j] = ψ(node_j - x),
+    /// with node_j = first + j. Evaluated by polynomials, within 1e-7 of ψ(0).
+    /// @return the first node.
+    int weights(float x, float* weights) const;
+    /// The same, and the derivative of each weight with respect to x.
+    int weights(float x, float* weights, float* derivatives) const;
+
+    static constexpr int kMaximumWidth = 12;
+
+  private:
+    void fitPolynomials();
+
+    int mWidth;
+    double mBeta;
+    double mScale;                     // makes ψ̂(0) = 1
+    int mDegree = 0;                   // of the polynomials
+    std::vector<float> mCoefficients;  // [mDegree + 1][kMaximumWidth], highest power first
+    std::vector<float> mDerivativeCoefficients;  // [mDegree][kMaximumWidth]
+};
+
+/// The largest error of the filtered density of a half-space when its boundary reaches the
+/// lattice through `kernel`:
+///     2 ∫_0^{1/2} H(k) Σ_{m≠0} |ψ̂(k + m)| / ψ̂(k) / (2πk) dk.
+/// docs/math/exact-route.md derives it.
+double aliasError(const ExponentialFilter& filter, const SpreadingKernel& kernel);
+
+}  // namespace bandvox
