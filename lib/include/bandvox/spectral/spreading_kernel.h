@@ -35,23 +35,28 @@ class SpreadingKernel {
     double transform(double k) const;
 
     /// The weights of the `width()` lattice nodes around a place: weights[j] = ψ(node_j - x),
-    /// with node_j = first + j. Evaluated by polynomials, within 1e-7 of ψ(0).
+    /// with node_j = first + j, and zeros from there up to `paddedWidth()` so that rows can be
+    /// worked on in whole vectors. Evaluated by polynomials, within a few 1e-7 of ψ(0).
     /// @return the first node.
     int weights(float x, float* weights) const;
     /// The same, and the derivative of each weight with respect to x.
     int weights(float x, float* weights, float* derivatives) const;
 
+    /// The number of weights that `weights` writes: 8 or 16.
+    int paddedWidth() const { return mWidth <= 8 ? 8 : kPaddedWidth; }
+
     static constexpr int kMaximumWidth = 12;
+    static constexpr int kPaddedWidth = 16;
 
   private:
     void fitPolynomials();
 
     int mWidth;
     double mBeta;
-    double mScale;                     // makes ψ̂(0) = 1
-    int mDegree = 0;                   // of the polynomials
-    std::vector<float> mCoefficients;  // [mDegree + 1][kMaximumWidth], highest power first
-    std::vector<float> mDerivativeCoefficients;  // [mDegree][kMaximumWidth]
+    double mScale;                               // makes ψ̂(0) = 1
+    int mDegree = 0;                             // of the polynomials
+    std::vector<float> mCoefficients;            // [mDegree + 1][kPaddedWidth], highest power first
+    std::vector<float> mDerivativeCoefficients;  // [mDegree][kPaddedWidth]
 };
 
 /// The largest error of the filtered density of a half-space when its boundary reaches the

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+namespace bandvox {
+
+struct FftBufferDeleter {
+    void operator()(float* data) const;
+};
+
+/// Memory aligned for FFTW.
+using FftBuffer = std::unique_ptr<float[], FftBufferDeleter>;
+
+/// Real transforms of n³ samples in place, with room for a margin behind each axis.
+///
+/// Sample (x, y, z) lies at (x·yCount + y)·zStride + z, for 0 ≤ x, y < n + margin and 0 ≤ z <
+/// n + margin. After `forward`, frequency (x, y, z) with z ≤ n/2 lies at the complex number
+/// (x·yCount + y)·zStride/2 + z. Only the n³ block is transformed. Both directions are without
+/// scale: inverse(forward(a)) = n³ a.
+///
+/// Plans are estimated, never measured, so that the result is the same in every run; they are
+/// made once per shape of the problem, and used by all threads.
+class RealFft3 {
+  public:
+    /// `inner` is the number of samples per axis that `inverse` has to produce.
+    static const RealFft3& get(int n, int margin = 0, int inner = 0);
+    ~RealFft3();
+    RealFft3(const RealFft3&) = delete;
+    RealFft3& operator=(const RealFft3&) = delete;
+
+    int size() const { return mSize; }
+    int yCount() const { return mYCount; }
+    int zStride() const { return mZStride; }
+    std::size_t bufferSize() const;
+    /// A buffer of bufferSize() floats, all zero.
+    FftBuffer allocate() const;
+
+    void forward(float* data) const;
+    /// Produces only samples with first ≤ x, y < first + inner (and every z).
+    void inverse(float* data, int first = 0) const;
+
+  private:
+    RealFft3(int n, int margin, int inner);
+
+    struct Plans;
+    int mSize, mInner, mXCount, mYCount, mZStride;
+    std::unique_ptr<Plans> mPlans;
+};
+
+}  // namespace bandvox

@@ -1,0 +1,218 @@
+#include <bandvox/core/error.h>
+#include <bandvox/spectral/spreading_kernel.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace bandvox {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// Accuracy of the polynomials relative to ψ(0), a little above a float's.
+constexpr double kPolynomialError = 1e-7;
+constexpr int kHighestDegree = 16;
+
+// sinh(√z)/√z, which is an entire function of z.
+double sinhRatio(double z) {
+    if (std::abs(z) < 1e-8) return 1 + z / 6;
+    const double root = std::sqrt(std::abs(z));
+    return z > 0 ? std::sinh(root) / root : std::sin(root) / root;
+}
+
+// ψ̂(k) times sinh β / β.
+double kernelTransform(int width, double beta, double k) {
+    const double a = kPi * width * k;
+    return sinhRatio(beta * beta - a * a);
+}
+
+// The polynomial of degree `degree` through the Chebyshev nodes of [-1, 1], as coefficients of
+// rising powers.
+template <typename Function>
+std::vector<double> interpolate(int degree, const Function& f) {
+    // Expand in Chebyshev polynomials by the discrete cosine sum.
+    const int n = degree + 1;
+    std::vector<double> chebyshev(n, 0.0);
+    for (int i = 0; i < n; ++i) {
+        const double angle = kPi * (i + 0.5) / n;
+        const double value = f(std::cos(angle));
+        for (int m = 0; m < n; ++m) {
+            chebyshev[m] += (m == 0 ? 1.0 : 2.0) / n * value * std::cos(m * angle);
+        }
+    }
+    // Change to powers with T_{m+1} = 2 z T_m - T_{m-1}.
+    std::vector<double> powers(n, 0.0), previous(n, 0.0), current(n, 0.0);
+    current[0] = 1;
+    for (int m = 0; m < n; ++m) {
+        for (int p = 0; p < n; ++p) powers[p] += chebyshev[m] * current[p];
+        std::vector<double> next(n, 0.0);
+        for (int p = 0; p + 1 < n; ++p) next[p + 1] = (m == 0 ? 1.0 : 2.0) * current[p];
+        for (int p = 0; p < n; ++p) next[p] -= m == 0 ? 0.0 : previous[p];
+        previous = current;
+        current = next;
+    }
+    return powers;
+}
+
+double evaluatePowers(const std::vector<double>& powers, double z) {
+    double value = 0;
+    for (std::size_t p = powers.size(); p-- > 0;) value = value * z + powers[p];
+    return value;
+}
+
+}  // namespace
+
+SpreadingKernel::SpreadingKernel(int width, double beta)
+    : mWidth(width), mBeta(beta), mScale(1 / (width * sinhRatio(beta * beta))) {
+    if (width < 2 || width > kMaximumWidth || !(beta > 0)) {
+        throw Error(ErrorKind::Usage, "a spreading kernel of width " + std::to_string(width) +
+                                          " and beta " + std::to_string(beta) +
+                                          "; the width must be 2 to " +
+                                          std::to_string(kMaximumWidth) + ", beta positive");
+    }
+    fitPolynomials();
+}
+
+double SpreadingKernel::operator()(double x) const {
+    const double u = 2 * x / mWidth;
+    if (std::abs(u) >= 1) return 0;
+    return mScale * std::cyl_bessel_i(0.0, mBeta * std::sqrt(1 - u * u));
+}
+
+double SpreadingKernel::derivative(double x) const {
+    const double u = 2 * x / mWidth;
+    if (std::abs(u) >= 1) return 0;
+    const double root = std::sqrt(1 - u * u);
+    return -mScale * mBeta * std::cyl_bessel_i(1.0, mBeta * root) * u / root * 2 / mWidth;
+}
+
+double SpreadingKernel::transform(double k) const {
+    return kernelTransform(mWidth, mBeta, k) / sinhRatio(mBeta * mBeta);
+}
+
+void SpreadingKernel::fitPolynomials() {
+    // Node j lies z = 2 d - 1 in its own unit interval, with d in [0, 1) the same for all nodes.
+    const auto weightOfNode = [this](int j, double z) {
+        return (*this)((z + 1) / 2 - 0.5 * mWidth + j);
+    };
+    std::vector<std::vector<double>> powers(mWidth);
+    const double accepted = kPolynomialError * (*this)(0);
+    for (mDegree = mWidth; mDegree <= kHighestDegree; ++mDegree) {
+        double error = 0;
+        for (int j = 0; j < mWidth; ++j) {
+            powers[j] = interpolate(mDegree, [&](double z) { return weightOfNode(j, z); });
+            for (double z = -0.999; z < 1; z += 0.027) {
+                error =
+                    std::max(error, std::abs(evaluatePowers(powers[j], z) - weightOfNode(j, z)));
+            }
+        }
+        if (error <= accepted || mDegree == kHighestDegree) break;
+    }
+    mCoefficients.assign((mDegree + 1) * kPaddedWidth, 0.0F);
+    mDerivativeCoefficients.assign(mDegree * kPaddedWidth, 0.0F);
+    for (int j = 0; j < mWidth; ++j) {
+        for (int p = 0; p <= mDegree; ++p) {
+            mCoefficients[(mDegree - p) * kPaddedWidth + j] = static_cast<float>(powers[j][p]);
+            // d falls as x rises: dz/dx = -2.
+            if (p > 0) {
+                mDerivativeCoefficients[(mDegree - p) * kPaddedWidth + j] =
+                    static_cast<float>(-2 * p * powers[j][p]);
+            }
+        }
+    }
+}
+
+namespace {
+
+// Horner's rule for all nodes at once.
+template <int kLanes>
+void evaluateNodes(const float* coefficients, int degree, float z, float* values) {
+    float sum[kLanes];
+    for (int j = 0; j < kLanes; ++j) sum[j] = coefficients[j];
+    for (int p = 1; p <= degree; ++p) {
+        const float* row = coefficients + p * SpreadingKernel::kPaddedWidth;
+        for (int j = 0; j < kLanes; ++j) sum[j] = sum[j] * z + row[j];
+    }
+    for (int j = 0; j < kLanes; ++j) values[j] = sum[j];
+}
+
+}  // namespace
+
+int SpreadingKernel::weights(float x, float* weights) const {
+    const float left = x - 0.5F * static_cast<float>(mWidth);
+    const float first = std::ceil(left);
+    const float z = 2 * (first - left) - 1;
+    if (paddedWidth() == 8) {
+        evaluateNodes<8>(mCoefficients.data(), mDegree, z, weights);
+    } else {
+        evaluateNodes<16>(mCoefficients.data(), mDegree, z, weights);
+    }
+    return static_cast<int>(first);
+}
+
+int SpreadingKernel::weights(float x, float* weights, float* derivatives) const {
+    const float left = x - 0.5F * static_cast<float>(mWidth);
+    const float z = 2 * (std::ceil(left) - left) - 1;
+    if (paddedWidth() == 8) {
+        evaluateNodes<8>(mDerivativeCoefficients.data(), mDegree - 1, z, derivatives);
+    } else {
+        evaluateNodes<16>(mDerivativeCoefficients.data(), mDegree - 1, z, derivatives);
+    }
+    return this->weights(x, weights);
+}
+
+namespace {
+
+// The error of aliasError, before a kernel with its polynomials is made.
+double aliasErrorOf(const ExponentialFilter& filter, int width, double beta) {
+    // The sum along x is snapped to whole numbers away from the surface, so wavelengths beyond a
+    // thousand voxels never add up; the midpoint rule starts there.
+    constexpr int kSteps = 256;
+    constexpr double kStep = 0.5 / kSteps;
+    double error = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double k = (i + 0.5) * kStep;
+        double aliases = 0;
+        for (int m = 1; m <= 3; ++m) {
+            aliases += std::abs(kernelTransform(width, beta, m - k)) +
+                       std::abs(kernelTransform(width, beta, m + k));
+        }
+        error += filter(k) * aliases / std::abs(kernelTransform(width, beta, k)) / (2 * kPi * k);
+    }
+    return 2 * error * kStep;
+}
+
+}  // namespace
+
+double aliasError(const ExponentialFilter& filter, const SpreadingKernel& kernel) {
+    return aliasErrorOf(filter, kernel.width(), kernel.beta());
+}
+
+SpreadingKernel SpreadingKernel::forFilter(const ExponentialFilter& filter, double tolerance) {
+    double best = 0;
+    for (int width = 3; width <= kMaximumWidth; ++width) {
+        // The error as a function of β has one broad minimum with narrow dips where ψ̂ has a zero
+        // at a whole frequency: walk over it in fine steps.
+        double bestBeta = 0;
+        best = 0;
+        for (double beta = 1.4 * width; beta <= 2.3 * width; beta += 0.125) {
+            const double error = aliasErrorOf(filter, width, beta);
+            if (bestBeta == 0 || error < best) {
+                best = error;
+                bestBeta = beta;
+            }
+        }
+        if (best <= tolerance) return SpreadingKernel(width, bestBeta);
+    }
+    throw Error(ErrorKind::Usage,
+                "no spreading kernel of up to " + std::to_string(kMaximumWidth) +
+                    " voxels reaches an error of " + std::to_string(tolerance) +
+                    " with a filter of order " + std::to_string(filter.order) + " and cutoff " +
+                    std::to_string(filter.cutoff) + " (best: " + std::to_string(best) +
+                    "); lower the cutoff, raise the order or raise the tolerance");
+}
+
+}  // namespace bandvox
