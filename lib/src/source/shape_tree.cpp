@@ -12,7 +12,7 @@ using openvdb::Vec3d;
 
 // The proportions of the tree, in units of its trunk's height before it is fitted to the box.
 constexpr int kLevels = 6;             ///< of branches above the trunk
-constexpr double kTrunkFoot = 0.15;   ///< half width
+constexpr double kTrunkFoot = 0.15;    ///< half width
 constexpr double kTrunkTop = 0.115;    ///< half width
 constexpr double kFirstHeight = 0.62;  ///< of the lowest branches
 constexpr double kHeightRatio = 0.80;  ///< from one level to the next
