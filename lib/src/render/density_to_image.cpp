@@ -14,7 +14,6 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -281,11 +280,10 @@ RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptio
     const auto reconstruction = makeBrickReconstruction(grid, reading);
 
     // Find where the surface can be. Between the nodes of the lattice the density can rise above
-    // them: a Gaussian's by no more than its slope times half a voxel's diagonal.
-    const double height = iso - grid->background();
+    // them: a Gaussian's by no more than its slope times half a voxel's diagonal, 0.24, and others
+    // not much further; half the height is on the safe side.
     const double slope = faceGradient(reading.filter);
-    const double between = std::min(0.5 * std::numbers::sqrt3 * slope, 0.5 * height);
-    const SurfaceBlocks blocks(*grid, iso - between);
+    const SurfaceBlocks blocks(*grid, 0.5 * (iso + grid->background()));
     if (blocks.empty()) {
         std::ostringstream message;
         message << "nothing to see: the density is at most " << blocks.maximum()
