@@ -48,6 +48,11 @@ class SpreadingKernel {
     static constexpr int kMaximumWidth = 12;
     static constexpr int kPaddedWidth = 16;
 
+    /// The polynomials behind `weights`, for loops that evaluate them in place: coefficient p
+    /// of node j at [p·kPaddedWidth + j], highest power first, in z = 2 (first - x + w/2) - 1.
+    const std::vector<float>& polynomials() const { return mCoefficients; }
+    int polynomialDegree() const { return mDegree; }
+
   private:
     void fitPolynomials();
 
