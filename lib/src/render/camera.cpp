@@ -73,9 +73,9 @@ Camera::Camera(const CameraOptions& options, int width, int height, const openvd
     // Turn the axes.
     const openvdb::Vec3d lookat = options.lookat.value_or(object.getCenter());
     if (!isFinite(lookat)) requireDirection(lookat, "lookat");
-    const openvdb::Vec3d back = options.eye ? requireDirection(*options.eye - lookat,
-                                                               "eye minus its lookat")
-                                            : requireDirection(options.from, "from");
+    const openvdb::Vec3d back =
+        options.eye ? requireDirection(*options.eye - lookat, "eye minus its lookat")
+                    : requireDirection(options.from, "from");
     mForward = -back;
     mRight = mForward.cross(requireDirection(options.up, "up"));
     if (!(mRight.length() > kSmallestSine)) {
@@ -118,6 +118,8 @@ Ray Camera::ray(double x, double y) const {
     return {mEye, (mForward + offset).unit()};
 }
 
-double Camera::depth(const openvdb::Vec3d& point) const { return (point - mEye).dot(mForward); }
+double Camera::depth(const openvdb::Vec3d& point) const {
+    return (point - mEye).dot(mForward);
+}
 
 }  // namespace bandvox

@@ -72,8 +72,9 @@ void requireDensity(const openvdb::FloatGrid& grid) {
     const std::string name = "the grid \"" + grid.getName() + "\" ";
     if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) {
         throw Error(ErrorKind::Input,
-                    name + "is a level set (signed distances); expected a density: convert it "
-                           "first, with `bandvox convert` or OpenVDB's sdfToFogVolume");
+                    name +
+                        "is a level set (signed distances); expected a density: convert it "
+                        "first, with `bandvox convert` or OpenVDB's sdfToFogVolume");
     }
     if (!grid.transform().isLinear()) {
         throw Error(ErrorKind::Input, name + "has a transform of type " +
@@ -143,9 +144,9 @@ class Scene {
           mFlat(kFlatGradient * faceGradient),
           mPlaces(samplePlaces(options.samples)) {
         const openvdb::Vec3d& light = options.light;
-        mLight = (light[0] * camera.right() + light[1] * camera.upward() -
-                  light[2] * camera.forward())
-                     .unit();
+        mLight =
+            (light[0] * camera.right() + light[1] * camera.upward() - light[2] * camera.forward())
+                .unit();
     }
 
     // Draws one pixel. Returns how many of its lines of sight hit.
@@ -179,8 +180,7 @@ class Scene {
   private:
     std::optional<Sight> look(const Ray& ray, DensityProbe& density) const {
         // Keep t: a length in world units, whatever the voxels' shape.
-        const Ray indexRay{mToIndex.transform(ray.origin),
-                           mToIndex.transform3x3(ray.direction)};
+        const Ray indexRay{mToIndex.transform(ray.origin), mToIndex.transform3x3(ray.direction)};
         const auto hit = mMarch.firstHit(indexRay, density);
         if (!hit) return std::nullopt;
         const openvdb::Vec3d position = ray.origin + hit->t * ray.direction;

@@ -91,8 +91,8 @@ class March {
         int side = 0;
         while (inside.t - outside.t > error) {
             const double width = inside.t - outside.t;
-            const double secant = outside.t + width * outside.above /
-                                                  (outside.above - inside.above);
+            const double secant =
+                outside.t + width * outside.above / (outside.above - inside.above);
             // Step a little over the root, so that the other end follows.
             const double guard = std::min(0.5 * error, 0.25 * width);
             const Sample next = at(std::clamp(secant, outside.t + guard, inside.t - guard));
