@@ -53,7 +53,7 @@ void writeVdb(const fs::path& path, const openvdb::GridCPtrVec& grids,
     // Shallow copies carry the "save as half" flag without touching the caller's grids.
     openvdb::GridCPtrVec saved;
     for (const openvdb::GridBase::ConstPtr& grid : grids) {
-        const openvdb::GridBase::Ptr copy = grid->copyGridReplacingMetadata(*grid);
+        const auto copy = openvdb::ConstPtrCast<openvdb::GridBase>(grid->copyGrid());
         copy->setSaveFloatAsHalf(options.half);
         saved.push_back(copy);
     }

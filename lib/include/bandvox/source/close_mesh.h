@@ -18,15 +18,16 @@ struct CloseMeshOptions {
 
 /// One boundary loop that was capped.
 struct CappedHole {
-    std::size_t edges = 0;   ///< of the loop
-    double perimeter = 0;    ///< world units
-    openvdb::Vec3d center;   ///< mean of its points, world units
+    std::size_t edges = 0;  ///< of the loop
+    double perimeter = 0;   ///< world units
+    openvdb::Vec3d center;  ///< mean of its points, world units
 };
 
 /// What was found, and what was done about it.
 struct CloseMeshReport {
     std::size_t pointsWelded = 0;         ///< points that fell together with another
-    std::size_t degenerateTriangles = 0;  ///< no area; dropped
+    std::size_t degenerateTriangles = 0;  ///< no area; dropped if two corners are equal
+    std::size_t duplicateTriangles = 0;   ///< same corners as another; dropped
     std::size_t components = 0;           ///< connected pieces
     std::size_t trianglesFlipped = 0;     ///< to agree with their neighbours, or turned outward
     std::size_t componentsTurned = 0;     ///< pieces that were inside out
@@ -41,14 +42,19 @@ struct ClosedMesh {
     CloseMeshReport report;
 };
 
-/// Makes a mesh the boundary of a solid: welds points, makes the orientation of each piece
-/// consistent, caps boundary loops by fans about their centre, turns pieces outward, drops
-/// triangles without area.
+/// Makes a mesh the boundary of a solid: welds points, drops triangles that collapse or appear
+/// twice, makes the orientation of each piece consistent, caps boundary loops by fans about
+/// their centre, turns pieces outward. Triangles that have no area but three corners stay, since
+/// the edges of their neighbours find their opposites there.
 ///
+/// A piece is what is connected across edges of exactly two triangles. Of two triangles that
+/// cover each other from opposite sides both are dropped, unless most of the mesh is like that:
+/// then one of each two.
 /// A piece inside another keeps its orientation relative to the outermost piece around it, so
 /// cavities stay cavities in a mesh that is inside out as a whole.
-/// Throws Error(ErrorKind::Input) if nothing is left, Error(ErrorKind::Result) if what is left
-/// encloses no volume (a flat mesh).
+/// Throws Error(ErrorKind::Input) if nothing is left, an index is out of range or a coordinate is
+/// not finite; Error(ErrorKind::Result) if what is left encloses no volume (a flat mesh);
+/// Error(ErrorKind::Usage) for a weld tolerance outside [0, 1).
 ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options = {},
                      Progress& progress = silentProgress());
 

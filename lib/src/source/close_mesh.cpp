@@ -1,0 +1,186 @@
+#include "source/cap_holes.h"
+#include "source/compensated_sum.h"
+#include "source/orient_components.h"
+#include "source/remove_duplicates.h"
+#include "source/turn_outward.h"
+#include "source/weld_points.h"
+
+#include <bandvox/core/error.h>
+#include <bandvox/source/close_mesh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+namespace bandvox {
+namespace {
+
+using openvdb::Vec3d;
+using openvdb::Vec3I;
+
+/// Volume, relative to area times size, below which a mesh counts as flat.
+constexpr double kFlat = 1e-9;
+
+/// Height of a triangle, relative to its longest edge, below which it has no area.
+constexpr double kNoHeight = 1e-12;
+
+/// "1 hole", "2 holes".
+std::string counted(std::size_t count, const std::string& one, const std::string& many) {
+    return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+/// Checks what later steps rely on.
+void checkMesh(const Mesh& mesh) {
+    constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() / 3;
+    if (mesh.triangles.size() > kMost || mesh.points.size() > kMost) {
+        throw Error(ErrorKind::Input, "the mesh has " + std::to_string(mesh.points.size()) +
+                                          " points and " + std::to_string(mesh.triangles.size()) +
+                                          " triangles; expected at most " + std::to_string(kMost) +
+                                          " of each");
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        for (int k = 0; k < 3; ++k) {
+            if (mesh.triangles[i][k] < mesh.points.size()) continue;
+            throw Error(ErrorKind::Input, "triangle " + std::to_string(i) + " refers to point " +
+                                              std::to_string(mesh.triangles[i][k]) +
+                                              "; expected less than " +
+                                              std::to_string(mesh.points.size()));
+        }
+    }
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+        if (mesh.points[i].isFinite()) continue;
+        throw Error(ErrorKind::Input,
+                    "point " + std::to_string(i) + " has a coordinate that is not finite");
+    }
+}
+
+double largestCoordinate(const Mesh& mesh) {
+    double largest = 0.0;
+    for (const Vec3d& p : mesh.points) {
+        for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(p[axis]));
+    }
+    return largest;
+}
+
+/// Removes triangles with two equal corners; returns how many there were.
+std::size_t dropCollapsed(Mesh& mesh) {
+    return std::erase_if(mesh.triangles, [](const Vec3I& t) {
+        return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+    });
+}
+
+std::size_t countWithoutArea(const Mesh& mesh) {
+    return static_cast<std::size_t>(
+        std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&mesh](const Vec3I& t) {
+            const Vec3d e1 = mesh.points[t[1]] - mesh.points[t[0]];
+            const Vec3d e2 = mesh.points[t[2]] - mesh.points[t[0]];
+            const double longest =
+                std::max({e1.lengthSqr(), e2.lengthSqr(), (e2 - e1).lengthSqr()});
+            return e1.cross(e2).length() <= kNoHeight * longest;
+        }));
+}
+
+void requireVolume(const Mesh& mesh) {
+    openvdb::BBoxd box;
+    for (const Vec3d& p : mesh.points) box.expand(p);
+    CompensatedSum volume;
+    CompensatedSum area;
+    for (const Vec3I& t : mesh.triangles) {
+        const Vec3d a = mesh.points[t[0]] - box.getCenter();
+        const Vec3d normal =
+            (mesh.points[t[1]] - mesh.points[t[0]]).cross(mesh.points[t[2]] - mesh.points[t[0]]);
+        volume.add(a.dot(normal) / 6.0);
+        area.add(0.5 * normal.length());
+    }
+    const double size = box.extents().length();
+    if (std::abs(volume.value()) > kFlat * area.value() * size) return;
+    std::ostringstream text;
+    text << "the mesh is flat: it encloses a volume of " << volume.value() << " with an area of "
+         << area.value() << " and a size of " << size << "; expected a solid";
+    throw Error(ErrorKind::Result, text.str());
+}
+
+void describe(const MeshComponents& components, const TurnedComponents& turned,
+              CloseMeshReport& report) {
+    const auto warn = [&report](const std::string& text) { report.warnings.push_back(text); };
+    if (report.duplicateTriangles > 0) {
+        warn(counted(report.duplicateTriangles, "triangle lies", "triangles lie") +
+             " on another with the same corners and " +
+             (report.duplicateTriangles == 1 ? "was" : "were") + " dropped");
+    }
+    if (report.nonManifoldEdges > 0) {
+        warn(counted(report.nonManifoldEdges, "edge is", "edges are") +
+             " shared by more than two triangles");
+    }
+    if (components.oneSided > 0) {
+        warn(counted(components.oneSided, "piece is", "pieces are") +
+             " one-sided, so that inside and outside are not defined there");
+    }
+    if (components.trianglesFlipped > 0) {
+        warn(counted(components.trianglesFlipped, "triangle", "triangles") +
+             " disagreed with the neighbours about what is outside and " +
+             (components.trianglesFlipped == 1 ? "was" : "were") + " flipped");
+    }
+    if (!report.holes.empty()) {
+        std::ostringstream text;
+        text << counted(report.holes.size(), "hole", "holes")
+             << " capped (largest: " << report.holes.front().edges << " edges, perimeter "
+             << report.holes.front().perimeter << ")";
+        warn(text.str());
+    }
+    if (turned.components > 0) {
+        warn(counted(turned.components, "piece was", "pieces were") + " inside out and " +
+             (turned.components == 1 ? "was" : "were") + " turned");
+    }
+}
+
+}  // namespace
+
+ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progress) {
+    if (!(options.weldTolerance >= 0.0 && options.weldTolerance < 1.0)) {
+        throw Error(ErrorKind::Usage, "the weld tolerance is " +
+                                          std::to_string(options.weldTolerance) +
+                                          "; expected at least 0 and less than 1");
+    }
+    const ProgressStage stage(progress, "close mesh", 4);
+    const auto advance = [&progress] {
+        progress.advance();
+        progress.throwIfInterrupted();
+    };
+    ClosedMesh closed;
+    CloseMeshReport& report = closed.report;
+
+    // Make the mesh one of distinct points and distinct triangles.
+    checkMesh(mesh);
+    removeUnusedPoints(mesh);
+    report.pointsWelded = weldPoints(mesh, options.weldTolerance * largestCoordinate(mesh));
+    report.degenerateTriangles = dropCollapsed(mesh);
+    report.duplicateTriangles = removeDuplicates(mesh);
+    if (mesh.triangles.empty()) {
+        throw Error(ErrorKind::Input, "the mesh has no triangle with an area; expected a solid");
+    }
+    report.degenerateTriangles += countWithoutArea(mesh);
+    advance();
+
+    // Make the pieces consistent and closed.
+    MeshComponents components = orientComponents(mesh);
+    report.components = components.count;
+    report.nonManifoldEdges = components.nonManifoldEdges;
+    advance();
+    report.holes = capHoles(mesh, components);
+    advance();
+
+    // Turn them outward. Triangles without area stay: their neighbours' edges are theirs.
+    const TurnedComponents turned = turnOutward(mesh, components);
+    report.componentsTurned = turned.components;
+    report.trianglesFlipped = components.trianglesFlipped + turned.triangles;
+    requireVolume(mesh);
+    describe(components, turned, report);
+    advance();
+    closed.mesh = std::move(mesh);
+    return closed;
+}
+
+}  // namespace bandvox

@@ -1,0 +1,140 @@
+#include "source/patch_source.h"
+
+#include "source/region_clip.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace bandvox {
+namespace {
+
+using openvdb::Vec3d;
+
+/// A rule that is accurate on a flat cell of some voxels, where a wave turns by so many radians,
+/// is as accurate on a curved one if the turning of the surface is counted in. At the highest
+/// frequencies that filters keep, 0.3 cycles a voxel, a radian takes half a voxel; twice that
+/// pays for the waves being bent as well.
+constexpr double kVoxelsPerRadian = 1.0;
+
+/// Halvings after which a cell is taken as it is.
+constexpr int kDeepestSplit = 64;
+
+/// What stays the same while a patch is being split.
+struct Sampling {
+    const Patch& patch;
+    double voxelSize;
+    const SurfaceQuadrature& quadrature;
+    RegionClip clip;
+    std::vector<SurfaceSample>& samples;
+};
+
+/// How large a cell is for quadrature along each parameter: voxels, turning included.
+struct CellSize {
+    double u = 0, v = 0;
+};
+
+/// By how much the direction from a to b to c turns, radians; 0 where there is no direction.
+double turning(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    const auto chord = [](const Vec3d& p, const Vec3d& q) {
+        const double scale = p.length() * q.length();
+        // |p̂ - q̂|² = 2 (1 - cos); the chord is the angle to first order.
+        return scale > 0.0 ? std::sqrt(std::max(0.0, 2.0 - 2.0 * p.dot(q) / scale)) : 0.0;
+    };
+    return chord(a, b) + chord(b, c);
+}
+
+double simpson(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    return (a.length() + 4.0 * b.length() + c.length()) / 6.0;
+}
+
+CellSize measure(const ParameterCell& cell, const Sampling& sampling) {
+    const double us[3] = {cell.u0, 0.5 * (cell.u0 + cell.u1), cell.u1};
+    const double vs[3] = {cell.v0, 0.5 * (cell.v0 + cell.v1), cell.v1};
+    PatchPoint p[3][3];
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) p[i][j] = sampling.patch.at(us[i], vs[j]);
+    }
+
+    const double uScale = (cell.u1 - cell.u0) / sampling.voxelSize;
+    const double vScale = (cell.v1 - cell.v0) / sampling.voxelSize;
+    CellSize size;
+    for (int i = 0; i < 3; ++i) {
+        const double uTurn = std::max(turning(p[0][i].du, p[1][i].du, p[2][i].du),
+                                      turning(p[0][i].dv, p[1][i].dv, p[2][i].dv));
+        const double vTurn = std::max(turning(p[i][0].du, p[i][1].du, p[i][2].du),
+                                      turning(p[i][0].dv, p[i][1].dv, p[i][2].dv));
+        size.u = std::max(size.u, uScale * simpson(p[0][i].du, p[1][i].du, p[2][i].du) +
+                                      kVoxelsPerRadian * uTurn);
+        size.v = std::max(size.v, vScale * simpson(p[i][0].dv, p[i][1].dv, p[i][2].dv) +
+                                      kVoxelsPerRadian * vTurn);
+    }
+    return size;
+}
+
+/// The lowest rule that is accurate on this length, or kIntervalRules.
+int lowestRule(const SurfaceQuadrature& quadrature, double length) {
+    const auto& sides = quadrature.cellSide;
+    return static_cast<int>(
+        std::find_if(sides.begin(), sides.end(), [length](double s) { return s >= length; }) -
+        sides.begin());
+}
+
+void applyRules(int uRule, int vRule, const ParameterCell& cell, const Sampling& sampling) {
+    const double du = cell.u1 - cell.u0;
+    const double dv = cell.v1 - cell.v0;
+    const double lengthScale = 1.0 / sampling.voxelSize;
+    const double areaScale = du * dv * lengthScale * lengthScale;
+    for (const IntervalPoint& pu : intervalRule(uRule)) {
+        for (const IntervalPoint& pv : intervalRule(vRule)) {
+            const PatchPoint p =
+                sampling.patch.at(cell.u0 + pu.position * du, cell.v0 + pv.position * dv);
+            sampling.clip.append(p.position * lengthScale,
+                                 (pu.weight * pv.weight * areaScale) * p.du.cross(p.dv),
+                                 sampling.samples);
+        }
+    }
+}
+
+void sampleCell(const ParameterCell& cell, int depth, const Sampling& sampling) {
+    // Leave out what the region cannot see; this changes no point that it can.
+    const openvdb::BBoxd box = sampling.patch.bounds(cell);
+    if (sampling.clip.misses(box.min() / sampling.voxelSize, box.max() / sampling.voxelSize)) {
+        return;
+    }
+
+    const CellSize size = measure(cell, sampling);
+    const int uRule = lowestRule(sampling.quadrature, size.u);
+    const int vRule = lowestRule(sampling.quadrature, size.v);
+    if ((uRule < kIntervalRules && vRule < kIntervalRules) || depth == kDeepestSplit) {
+        applyRules(std::min(uRule, kIntervalRules - 1), std::min(vRule, kIntervalRules - 1), cell,
+                   sampling);
+        return;
+    }
+
+    // Halve the longer side.
+    ParameterCell first = cell;
+    ParameterCell second = cell;
+    if (size.u >= size.v) {
+        first.u1 = second.u0 = 0.5 * (cell.u0 + cell.u1);
+    } else {
+        first.v1 = second.v0 = 0.5 * (cell.v0 + cell.v1);
+    }
+    sampleCell(first, depth + 1, sampling);
+    sampleCell(second, depth + 1, sampling);
+}
+
+}  // namespace
+
+PatchSource::PatchSource(std::string name, PatchList patches, double volume, double area)
+    : mName(std::move(name)), mPatches(std::move(patches)), mVolume(volume), mArea(area) {
+    for (const auto& patch : mPatches) mBounds.expand(patch->bounds({}));
+}
+
+void PatchSource::sampleElement(std::size_t i, const SamplingRegion& region,
+                                const SurfaceQuadrature& quadrature,
+                                std::vector<SurfaceSample>& samples) const {
+    requireUsefulLength(quadrature.cellSide.back(), "cell side");
+    sampleCell({}, 0, {*mPatches[i], region.voxelSize, quadrature, RegionClip(region), samples});
+}
+
+}  // namespace bandvox

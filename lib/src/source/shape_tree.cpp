@@ -1,0 +1,171 @@
+#include "source/shape_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace bandvox {
+namespace {
+
+using openvdb::Vec3d;
+
+// The proportions of the tree, in units of its trunk's height before it is fitted to the box.
+constexpr int kLevels = 6;             ///< of branches above the trunk
+constexpr double kTrunkFoot = 0.15;    ///< half width
+constexpr double kTrunkTop = 0.115;    ///< half width
+constexpr double kFirstHeight = 0.62;  ///< of the lowest branches
+constexpr double kHeightRatio = 0.80;  ///< from one level to the next
+constexpr double kTaper = 0.94;        ///< side of a top relative to its foot, as squares
+constexpr double kLean = 0.54;         ///< sideways per height, away from the sibling
+constexpr double kLeanKept = 0.62;     ///< of the parent's lean
+constexpr double kVariation = 0.22;    ///< by which siblings differ in lean and height
+
+}  // namespace
+
+TreeShape::TreeShape() {
+    Branch trunk;
+    trunk.y0 = 0.0;
+    trunk.y1 = 1.0;
+    trunk.foot = {{-kTrunkFoot, -kTrunkFoot}, {kTrunkFoot, kTrunkFoot}};
+    trunk.top = {{-kTrunkTop, -kTrunkTop}, {kTrunkTop, kTrunkTop}};
+    constexpr double kFar = 1e3;
+    grow(trunk, {{-kFar, -kFar}, {kFar, kFar}}, {0.0, 0.0}, 0);
+    fitToBox();
+}
+
+/// Adds a branch and all that grows from it, within `room`, and returns its index.
+int TreeShape::grow(const Branch& sprout, const Rectangle& room, const double (&lean)[2],
+                    int level) {
+    const int index = static_cast<int>(mBranches.size());
+    mBranches.push_back(sprout);
+    if (level == kLevels) return index;
+
+    const int axis = level % 2;
+    const double split = 0.5 * (sprout.top.min[axis] + sprout.top.max[axis]);
+    mBranches[index].splitAxis = axis;
+    mBranches[index].split = split;
+    for (int side = 0; side < 2; ++side) {
+        // Give the child its half of the foot and of the room.
+        const double outward = side == 0 ? -1.0 : 1.0;
+        Branch child;
+        child.foot = sprout.top;
+        Rectangle childRoom = room;
+        (side == 0 ? child.foot.max : child.foot.min)[axis] = split;
+        (side == 0 ? childRoom.max : childRoom.min)[axis] = split;
+
+        // Let one of the siblings lean more, and the other grow higher.
+        const double vary = (side + level / 2) % 2 == 0 ? kVariation : -kVariation;
+        const double height = kFirstHeight * std::pow(kHeightRatio, level) * (1.0 - vary);
+        double childLean[2] = {kLeanKept * lean[0], kLeanKept * lean[1]};
+        childLean[axis] += outward * kLean * (1.0 + vary);
+
+        // Set the top square where it leans to, but in the room.
+        const double footArea =
+            (child.foot.max[0] - child.foot.min[0]) * (child.foot.max[1] - child.foot.min[1]);
+        for (int a = 0; a < 2; ++a) {
+            const double width = childRoom.max[a] - childRoom.min[a];
+            const double half = std::min(0.5 * kTaper * std::sqrt(footArea), 0.45 * width);
+            const double middle = 0.5 * (child.foot.min[a] + child.foot.max[a]);
+            const double center =
+                std::clamp(middle + height * childLean[a], childRoom.min[a] + 1.1 * half,
+                           childRoom.max[a] - 1.1 * half);
+            child.top.min[a] = center - half;
+            child.top.max[a] = center + half;
+        }
+        child.y0 = sprout.y1;
+        child.y1 = sprout.y1 + height;
+        const int childIndex = grow(child, childRoom, childLean, level + 1);
+        mBranches[index].children[side] = childIndex;
+    }
+    return index;
+}
+
+/// Moves and scales all branches so that the height becomes [-1, 1].
+void TreeShape::fitToBox() {
+    double height = 0.0;
+    Rectangle box = mBranches.front().foot;
+    for (const Branch& b : mBranches) {
+        height = std::max(height, b.y1);
+        for (int a = 0; a < 2; ++a) {
+            box.min[a] = std::min(box.min[a], b.top.min[a]);
+            box.max[a] = std::max(box.max[a], b.top.max[a]);
+        }
+    }
+    const double scale = 2.0 / height;
+    const auto fitHeight = [&](double y) { return y == height ? 1.0 : y * scale - 1.0; };
+    const auto fit = [&](double& x, int a) { x = (x - 0.5 * (box.min[a] + box.max[a])) * scale; };
+    for (Branch& b : mBranches) {
+        b.y0 = fitHeight(b.y0);
+        b.y1 = fitHeight(b.y1);
+        for (int a = 0; a < 2; ++a) {
+            for (Rectangle* r : {&b.foot, &b.top}) {
+                fit(r->min[a], a);
+                fit(r->max[a], a);
+            }
+        }
+        fit(b.split, b.splitAxis);
+    }
+}
+
+bool TreeShape::contains(const Vec3d& point) const {
+    const double p[2] = {point.x(), point.z()};
+    int index = 0;
+    while (index >= 0) {
+        const Branch& b = mBranches[index];
+        if (point.y() < b.y0) return false;
+        if (point.y() <= b.y1) {
+            const double t = (point.y() - b.y0) / (b.y1 - b.y0);
+            for (int a = 0; a < 2; ++a) {
+                if (p[a] < std::lerp(b.foot.min[a], b.top.min[a], t)) return false;
+                if (p[a] > std::lerp(b.foot.max[a], b.top.max[a], t)) return false;
+            }
+            return true;
+        }
+        index = b.children[p[b.splitAxis] < b.split ? 0 : 1];
+    }
+    return false;
+}
+
+double TreeShape::volume() const {
+    // The cross-section is the product of two linear functions of the height.
+    double volume = 0.0;
+    for (const Branch& b : mBranches) {
+        double foot[2];
+        double top[2];
+        for (int a = 0; a < 2; ++a) {
+            foot[a] = b.foot.max[a] - b.foot.min[a];
+            top[a] = b.top.max[a] - b.top.min[a];
+        }
+        volume += (b.y1 - b.y0) * ((foot[0] * foot[1] + top[0] * top[1]) / 3.0 +
+                                   (foot[0] * top[1] + top[0] * foot[1]) / 6.0);
+    }
+    return volume;
+}
+
+double TreeShape::appendPatches(PatchList& patches) const {
+    double area = 0.0;
+    const auto append = [&](const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
+        auto patch = std::make_unique<QuadPatch>(a, b, c, d);
+        area += patch->area();
+        patches.push_back(std::move(patch));
+    };
+    for (const Branch& b : mBranches) {
+        // Name the corners counter-clockwise as seen from above.
+        const auto corners = [](const Rectangle& r, double y) {
+            return std::array<Vec3d, 4>{Vec3d(r.min[0], y, r.max[1]), Vec3d(r.max[0], y, r.max[1]),
+                                        Vec3d(r.max[0], y, r.min[1]), Vec3d(r.min[0], y, r.min[1])};
+        };
+        const std::array<Vec3d, 4> foot = corners(b.foot, b.y0);
+        const std::array<Vec3d, 4> top = corners(b.top, b.y1);
+        for (int i = 0; i < 4; ++i) {
+            const int next = (i + 1) % 4;
+            append(foot[i], foot[next], top[next], top[i]);
+        }
+        if (&b == &mBranches.front()) append(foot[0], foot[3], foot[2], foot[1]);
+        if (b.children[0] < 0) append(top[0], top[1], top[2], top[3]);
+    }
+    return area;
+}
+
+}  // namespace bandvox

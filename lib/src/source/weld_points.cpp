@@ -1,0 +1,189 @@
+#include "source/weld_points.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace bandvox {
+namespace {
+
+using openvdb::Vec3d;
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// Side of a cell of the grid that finds near points, in tolerances: so large that most points
+/// are far from their cell's border and need no look into a neighbour.
+constexpr double kCellSide = 16.0;
+
+std::uint64_t mix(std::uint64_t h) {
+    // The finaliser of S. Vigna's splitmix64.
+    h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
+    h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
+    return h ^ (h >> 31);
+}
+
+template <typename Key>
+std::uint64_t hash(const Key& key) {
+    std::uint64_t h = 0x9e3779b97f4a7c15u;
+    for (const auto part : key) h = mix(h + std::bit_cast<std::uint64_t>(part));
+    return h;
+}
+
+/// From keys to numbers; open addressing, sized once.
+template <typename Key>
+class HashTable {
+  public:
+    explicit HashTable(std::size_t capacity)
+        : mMask(std::bit_ceil(2 * capacity + 1) - 1), mEntries(mMask + 1) {}
+
+    /// The number stored for `key`, kNone at first.
+    std::uint32_t& operator[](const Key& key) {
+        std::size_t slot = hash(key) & mMask;
+        while (mEntries[slot].used && mEntries[slot].key != key) slot = (slot + 1) & mMask;
+        mEntries[slot].used = true;
+        mEntries[slot].key = key;
+        return mEntries[slot].value;
+    }
+
+    /// The number stored for `key`, or kNone.
+    std::uint32_t find(const Key& key) const {
+        std::size_t slot = hash(key) & mMask;
+        while (mEntries[slot].used && mEntries[slot].key != key) slot = (slot + 1) & mMask;
+        return mEntries[slot].used ? mEntries[slot].value : kNone;
+    }
+
+  private:
+    struct Entry {
+        Key key{};
+        std::uint32_t value = kNone;
+        bool used = false;
+    };
+    std::size_t mMask;
+    std::vector<Entry> mEntries;
+};
+
+/// Gives the triangles new point numbers.
+void renumber(Mesh& mesh, const std::vector<std::uint32_t>& newIndex) {
+    for (openvdb::Vec3I& t : mesh.triangles) {
+        for (int i = 0; i < 3; ++i) t[i] = newIndex[t[i]];
+    }
+}
+
+void weldEqualPoints(Mesh& mesh) {
+    using Key = std::array<double, 3>;
+    HashTable<Key> table(mesh.points.size());
+    std::vector<std::uint32_t> newIndex(mesh.points.size());
+    std::uint32_t count = 0;
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+        const Vec3d p = mesh.points[i] + Vec3d(0.0);  // makes -0 a 0, which has other bits
+        std::uint32_t& index = table[Key{p.x(), p.y(), p.z()}];
+        if (index == kNone) {
+            index = count;
+            mesh.points[count++] = p;
+        }
+        newIndex[i] = index;
+    }
+    mesh.points.resize(count);
+    renumber(mesh, newIndex);
+}
+
+/// Finds earlier points near a new one, with a hash of grid cells.
+class NearPoints {
+  public:
+    NearPoints(double tolerance, std::size_t capacity)
+        : mTolerance(tolerance), mCell(kCellSide * tolerance), mHeads(capacity) {
+        mNext.reserve(capacity);
+    }
+
+    /// An added point within the tolerance of p, or kNone.
+    std::uint32_t find(const Vec3d& p, const std::vector<Vec3d>& points) const {
+        const Key lower = cellOf(p - Vec3d(mTolerance));
+        const Key upper = cellOf(p + Vec3d(mTolerance));
+        for (std::int64_t x = lower[0]; x <= upper[0]; ++x) {
+            for (std::int64_t y = lower[1]; y <= upper[1]; ++y) {
+                for (std::int64_t z = lower[2]; z <= upper[2]; ++z) {
+                    std::uint32_t i = mHeads.find(Key{x, y, z});
+                    for (; i != kNone; i = mNext[i]) {
+                        if ((points[i] - p).lengthSqr() <= mTolerance * mTolerance) return i;
+                    }
+                }
+            }
+        }
+        return kNone;
+    }
+
+    /// Adds p as the point with the next number.
+    void add(const Vec3d& p) {
+        std::uint32_t& head = mHeads[cellOf(p)];
+        mNext.push_back(std::exchange(head, static_cast<std::uint32_t>(mNext.size())));
+    }
+
+  private:
+    using Key = std::array<std::int64_t, 3>;
+
+    Key cellOf(const Vec3d& p) const {
+        const auto along = [this](double x) {
+            return static_cast<std::int64_t>(std::floor(x / mCell));
+        };
+        return {along(p.x()), along(p.y()), along(p.z())};
+    }
+
+    double mTolerance;
+    double mCell;
+    HashTable<Key> mHeads;
+    std::vector<std::uint32_t> mNext;
+};
+
+void weldNearPoints(Mesh& mesh, double tolerance) {
+    NearPoints near(tolerance, mesh.points.size());
+    std::vector<std::uint32_t> newIndex(mesh.points.size());
+    std::uint32_t count = 0;
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+        const Vec3d p = mesh.points[i];
+        std::uint32_t index = near.find(p, mesh.points);
+        if (index == kNone) {
+            near.add(p);
+            mesh.points[count] = p;
+            index = count++;
+        }
+        newIndex[i] = index;
+    }
+    mesh.points.resize(count);
+    renumber(mesh, newIndex);
+}
+
+}  // namespace
+
+void removeUnusedPoints(Mesh& mesh) {
+    std::vector<std::uint32_t> newIndex(mesh.points.size(), kNone);
+    for (const openvdb::Vec3I& t : mesh.triangles) {
+        for (int i = 0; i < 3; ++i) newIndex[t[i]] = 0;
+    }
+    std::uint32_t count = 0;
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+        if (newIndex[i] == kNone) continue;
+        mesh.points[count] = mesh.points[i];
+        newIndex[i] = count++;
+    }
+    mesh.points.resize(count);
+    renumber(mesh, newIndex);
+}
+
+std::size_t weldPoints(Mesh& mesh, double tolerance) {
+    const std::size_t before = mesh.points.size();
+    weldEqualPoints(mesh);
+
+    // Below the rounding of doubles a tolerance means equality, and cell numbers would overflow.
+    double largest = 0.0;
+    for (const Vec3d& p : mesh.points) {
+        for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(p[axis]));
+    }
+    if (tolerance > 1e-15 * largest) weldNearPoints(mesh, tolerance);
+    return before - mesh.points.size();
+}
+
+}  // namespace bandvox
