@@ -33,7 +33,7 @@ constexpr int kImageTile = 32;
 constexpr double kFinestTolerance = 1e-4;
 constexpr double kCoarsestTolerance = 1e-2;
 
-// A flat face is the steepest of solids under a filter that does not ring; others come close.
+// Of solids under a filter that does not ring a flat face is the steepest; others come close.
 constexpr double kSteepestMargin = 1.5;
 
 // Gradients below this part of a flat face's have no direction worth showing.
@@ -228,6 +228,20 @@ Image blankImage(const RenderOptions& options, double iso,
     return image;
 }
 
+// How far lines of sight may step. Solids under the default filter have a sharp bound; others,
+// and what was not made by this library, are taken to be about as steep as a flat face.
+ClearDistance clearDistance(const openvdb::FloatGrid& grid,
+                            const std::optional<DensityMetadata>& metadata, double maximum,
+                            double iso, double faceSlope) {
+    constexpr double kRounding = 1e-2;
+    const double background = grid.background();
+    if (metadata && metadata->order == 2 && background == 0 && maximum < 1 + kRounding && iso < 1) {
+        return ClearDistance::ofGaussian(iso, metadata->cutoff);
+    }
+    const double range = std::max(1.0, maximum - background);
+    return ClearDistance::ofSlope(iso, background, kSteepestMargin * faceSlope * range);
+}
+
 // Memory for the reconstruction's bricks: what most pictures need, if the machine has it.
 std::size_t cacheBytes() {
     constexpr std::int64_t kLeast = std::int64_t(64) << 20, kMost = std::int64_t(2) << 30;
@@ -290,8 +304,7 @@ RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptio
                 << ", below the iso-value " << iso;
         throw Error(ErrorKind::Result, message.str());
     }
-    const double range = std::max(1.0, blocks.maximum() - grid->background());
-    const RayMarch march(blocks, iso, kSteepestMargin * slope * range);
+    const RayMarch march(blocks, iso, clearDistance(*grid, metadata, blocks.maximum(), iso, slope));
 
     // Draw.
     RenderResult result;
