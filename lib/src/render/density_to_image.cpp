@@ -14,6 +14,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -29,9 +30,9 @@ constexpr int kMostSamples = 4096;
 // Pixels along the side of what one task draws.
 constexpr int kImageTile = 32;
 
-// The eye cannot tell a finer reconstruction, and a coarser one would show.
+// The eye cannot tell a finer reconstruction; a coarser one is no picture of the density.
 constexpr double kFinestTolerance = 1e-4;
-constexpr double kCoarsestTolerance = 1e-2;
+constexpr double kCoarsestTolerance = 0.1;
 
 // Of solids under a filter that does not ring a flat face is the steepest; others come close.
 constexpr double kSteepestMargin = 1.5;
@@ -248,6 +249,23 @@ std::size_t cacheBytes() {
     return static_cast<std::size_t>(std::clamp(availableMemory() / 4, kLeast, kMost));
 }
 
+// Sharp filters keep more than can be read between the nodes to the finest tolerance: then read
+// them as well as can be.
+std::unique_ptr<Reconstruction> readLattice(const openvdb::FloatGrid::ConstPtr& grid,
+                                            const ExponentialFilter& filter, double tolerance) {
+    BrickReconstructionOptions options{filter, tolerance, cacheBytes()};
+    for (;; options.tolerance *= 3) {
+        try {
+            options.tolerance = std::min(options.tolerance, kCoarsestTolerance);
+            return makeBrickReconstruction(grid, options);
+        } catch (const Error& error) {
+            if (options.tolerance < kCoarsestTolerance) continue;
+            throw Error(ErrorKind::Input,
+                        "the grid \"" + grid->getName() + "\" cannot be read: " + error.what());
+        }
+    }
+}
+
 // Draws all pixels, a tile to a task. Returns how many lines of sight hit.
 std::int64_t drawTiles(const Scene& scene, const Reconstruction& reconstruction, Image& image,
                        Progress& progress) {
@@ -285,18 +303,15 @@ RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptio
     const Camera camera(options.camera, options.width, options.height, worldBox(*grid));
 
     // Read the lattice by the filter that it was made with.
-    BrickReconstructionOptions reading;
-    reading.cacheBytes = cacheBytes();
-    if (metadata) {
-        reading.filter = {metadata->order, metadata->cutoff};
-        reading.tolerance = std::clamp(metadata->tolerance, kFinestTolerance, kCoarsestTolerance);
-    }
-    const auto reconstruction = makeBrickReconstruction(grid, reading);
+    const auto filter =
+        metadata ? ExponentialFilter{metadata->order, metadata->cutoff} : ExponentialFilter();
+    const auto reconstruction =
+        readLattice(grid, filter, std::max(metadata ? metadata->tolerance : 0, kFinestTolerance));
 
     // Find where the surface can be. Between the nodes of the lattice the density can rise above
     // them: a Gaussian's by no more than its slope times half a voxel's diagonal, 0.24, and others
     // not much further; half the height is on the safe side.
-    const double slope = faceGradient(reading.filter);
+    const double slope = faceGradient(filter);
     const SurfaceBlocks blocks(*grid, 0.5 * (iso + grid->background()));
     if (blocks.empty()) {
         std::ostringstream message;
