@@ -352,6 +352,21 @@ TEST(DensityToImage, RefusesWhatIsNoDensity) {
     EXPECT_EQ(kindOfFailure(bent, options), ErrorKind::Input);
 }
 
+TEST(DensityToImage, DrawsSharpFiltersAsWellAsCanBe) {
+    // Read as if filtered sharply: the reconstruction cannot reach the finest tolerance.
+    auto grid = ballGrid();
+    bandvox::DensityMetadata metadata = *bandvox::densityMetadata(*grid);
+    metadata.order = 16;
+    metadata.cutoff = 0.42;
+    bandvox::setDensityMetadata(*grid, metadata);
+    const RenderResult result = densityToImage(grid, frontView(9, 10));
+    EXPECT_NEAR(result.image.depth[4 * 9 + 4], 60 - ballSurface(kRadius, 0.5), 1e-2);
+
+    metadata.order = -3;
+    bandvox::setDensityMetadata(*grid, metadata);
+    EXPECT_EQ(kindOfFailure(grid, frontView(9, 10)), ErrorKind::Input);
+}
+
 TEST(DensityToImage, SaysWhenNothingIsSeen) {
     // Active, but nowhere as dense as the surface.
     auto thin = openvdb::FloatGrid::create(0);
