@@ -38,12 +38,12 @@ struct RealFft3::Plans {
     fftwf_plan inverseZ = nullptr, inverseY = nullptr, inverseX = nullptr;
 };
 
-RealFft3::RealFft3(int n, int margin, int inner)
+RealFft3::RealFft3(int n, int margin, int zMargin, int inner)
     : mSize(n),
       mInner(inner > 0 ? inner : n),
       mXCount(n + margin),
       mYCount(n + margin),
-      mZStride(paddedRow(std::max(2 * (n / 2 + 1), n + margin))),
+      mZStride(paddedRow(std::max(2 * (n / 2 + 1), n + zMargin))),
       mPlans(std::make_unique<Plans>()) {
     const FftBuffer buffer = allocate();
     float* real = buffer.get();
@@ -73,11 +73,11 @@ RealFft3::~RealFft3() {
     }
 }
 
-const RealFft3& RealFft3::get(int n, int margin, int inner) {
-    static std::map<std::tuple<int, int, int>, std::unique_ptr<RealFft3>> plans;
+const RealFft3& RealFft3::get(int n, int margin, int zMargin, int inner) {
+    static std::map<std::tuple<int, int, int, int>, std::unique_ptr<RealFft3>> plans;
     const std::lock_guard<std::mutex> lock(plannerMutex());
-    std::unique_ptr<RealFft3>& plan = plans[{n, margin, inner}];
-    if (!plan) plan.reset(new RealFft3(n, margin, inner));
+    std::unique_ptr<RealFft3>& plan = plans[{n, margin, zMargin, inner}];
+    if (!plan) plan.reset(new RealFft3(n, margin, zMargin, inner));
     return *plan;
 }
 

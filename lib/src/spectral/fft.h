@@ -15,7 +15,7 @@ using FftBuffer = std::unique_ptr<float[], FftBufferDeleter>;
 /// Real transforms of n³ samples in place, with room for a margin behind each axis.
 ///
 /// Sample (x, y, z) lies at (x·yCount + y)·zStride + z, for 0 ≤ x, y < n + margin and 0 ≤ z <
-/// n + margin. After `forward`, frequency (x, y, z) with z ≤ n/2 lies at the complex number
+/// n + zMargin. After `forward`, frequency (x, y, z) with z ≤ n/2 lies at the complex number
 /// (x·yCount + y)·zStride/2 + z. Only the n³ block is transformed. Both directions are without
 /// scale: inverse(forward(a)) = n³ a.
 ///
@@ -24,12 +24,13 @@ using FftBuffer = std::unique_ptr<float[], FftBufferDeleter>;
 class RealFft3 {
   public:
     /// `inner` is the number of samples per axis that `inverse` has to produce.
-    static const RealFft3& get(int n, int margin = 0, int inner = 0);
+    static const RealFft3& get(int n, int margin = 0, int zMargin = 0, int inner = 0);
     ~RealFft3();
     RealFft3(const RealFft3&) = delete;
     RealFft3& operator=(const RealFft3&) = delete;
 
     int size() const { return mSize; }
+    int xCount() const { return mXCount; }
     int yCount() const { return mYCount; }
     int zStride() const { return mZStride; }
     std::size_t bufferSize() const;
@@ -41,7 +42,7 @@ class RealFft3 {
     void inverse(float* data, int first = 0) const;
 
   private:
-    RealFft3(int n, int margin, int inner);
+    RealFft3(int n, int margin, int zMargin, int inner);
 
     struct Plans;
     int mSize, mInner, mXCount, mYCount, mZStride;

@@ -12,15 +12,21 @@ namespace bandvox {
 
 /// How a lattice is read as a continuous density.
 struct BrickReconstructionOptions {
-    ExponentialFilter filter;                ///< what the lattice was filtered with
-    double tolerance = 1e-4;                 ///< error of the value allowed, density
-    std::size_t cacheBytes = 512u << 20;     ///< memory for bricks, at least a few
+    ExponentialFilter filter;             ///< what the lattice was filtered with
+    double tolerance = 1e-4;              ///< error allowed: of the value in density, of the
+                                          ///< gradient relative to a flat face's; 1e-6 to 0.1
+    std::size_t cacheBytes = 512u << 20;  ///< memory for bricks; room for 16 is always taken
 };
 
-/// Band-limited interpolation in bricks: each brick of the lattice, with a halo, is transformed,
-/// divided by the transform of a compact kernel, and transformed back, when it is first needed;
-/// value and gradient at a place are then short sums over the kernel. The kernel's own
-/// derivative makes the gradient that of the Fourier series, 2πik with k signed.
+/// Band-limited interpolation in bricks of 32³ voxels: when a brick is first needed, its lattice
+/// values and a halo are convolved with a short filter that undoes a compact kernel; value and
+/// gradient at a place are then short sums over the kernel and its derivative, which is the
+/// gradient of the Fourier series, 2πik with k signed. Bricks agree where they meet
+/// (docs/math/reconstruction.md). Values of inactive voxels and tiles count as they are.
+///
+/// Chiba, Aoki, Saito: "A Voxel Based Geometric Modeling" (1990), section 3.2.
+/// Throws Error(ErrorKind::Usage) if `grid` is null, if the tolerance is out of range, or if no
+/// kernel reaches it because the filter leaves too much near Nyquist.
 std::unique_ptr<Reconstruction> makeBrickReconstruction(openvdb::FloatGrid::ConstPtr grid,
                                                         const BrickReconstructionOptions& options);
 

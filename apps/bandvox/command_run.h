@@ -1,0 +1,77 @@
+#pragma once
+
+#include "command_line.h"
+#include "command_progress.h"
+
+#include <bandvox/core/atomic_file.h>
+#include <bandvox/core/error.h>
+#include <bandvox/core/parallel.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace bandvox::app {
+
+/// One run of a command: what the shared options ask for.
+class CommandRun {
+  public:
+    /// Throws Error(ErrorKind::Usage) for shared options out of range, Error(ErrorKind::Runtime)
+    /// if the statistics could not be written.
+    explicit CommandRun(const CommandLine& line);
+    ~CommandRun();
+    CommandRun(const CommandRun&) = delete;
+    CommandRun& operator=(const CommandRun&) = delete;
+
+    Progress& progress() { return mProgress; }
+    bool verbose() const { return mVerbose; }
+
+    /// Prints a line on the standard error, unless --quiet.
+    void say(const std::string& message);
+    /// Prints a line on the standard error if --verbose.
+    void sayMore(const std::string& message);
+
+    /// Prints each warning. Under --strict throws Error(strictKind) if there is one.
+    void warn(const std::vector<std::string>& warnings, ErrorKind strictKind);
+
+    /// Adds an entry to "counts" of the statistics.
+    void count(const std::string& name, const nlohmann::json& value);
+
+    /// Lets `write` write to a path, and gives the result the name `target` unless the user wants
+    /// to stop; `output` was made for that name. Then finishes. The last step of a command.
+    void writeOutput(AtomicFile& output, const std::filesystem::path& target,
+                     const std::function<void(const std::filesystem::path&)>& write);
+
+    /// Writes the statistics if they are asked for. The last step of a command without output.
+    void finish();
+
+  private:
+    void writeStatistics();
+    double seconds() const;
+
+    std::string mCommand;
+    std::chrono::steady_clock::time_point mStart;
+    bool mQuiet, mVerbose, mStrict;
+    CommandProgress mProgress;
+    ThreadLimit mThreads;
+    std::unique_ptr<AtomicFile> mStatistics;
+    std::unique_ptr<nlohmann::json> mCounts;
+};
+
+/// Writes a command's result to the standard output. A reader that has gone away is no failure;
+/// throws Error(ErrorKind::Runtime) if it cannot be written for another reason.
+void writeResult(const std::string& text);
+
+/// The lower-case extension of a path, with the dot.
+std::string extensionOf(const std::filesystem::path& path);
+
+/// Throws Error(ErrorKind::Usage) unless `path`, given to --output, ends in one of `extensions`.
+void requireExtension(const std::filesystem::path& path,
+                      const std::vector<std::string>& extensions);
+
+}  // namespace bandvox::app

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "command_line.h"
+#include "option_table.h"
+
+#include <vector>
+
+namespace bandvox::app {
+
+/// A command: what it says of itself, and what it does. `run` returns when all is done, and
+/// throws Error or another std::exception if that fails.
+struct Command {
+    const CommandTable& (*table)();
+    void (*run)(const CommandLine& line);
+};
+
+const CommandTable& convertTable();
+void runConvert(const CommandLine& line);
+
+const CommandTable& renderTable();
+void runRender(const CommandLine& line);
+
+const CommandTable& infoTable();
+void runInfo(const CommandLine& line);
+
+/// All commands, in the order in which the help lists them.
+inline const std::vector<Command>& commands() {
+    static const std::vector<Command> all{
+        {convertTable, runConvert}, {renderTable, runRender}, {infoTable, runInfo}};
+    return all;
+}
+
+}  // namespace bandvox::app

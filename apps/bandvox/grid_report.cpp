@@ -1,0 +1,144 @@
+#include "grid_report.h"
+
+#include "words.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string_view>
+
+namespace bandvox::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kOwnPrefix = "bandvox_";
+
+Json toJson(const openvdb::Vec3d& vector) {
+    return Json::array({vector.x(), vector.y(), vector.z()});
+}
+
+Json toJson(const openvdb::Coord& coord) {
+    return Json::array({coord.x(), coord.y(), coord.z()});
+}
+
+/// A metadata value as the JSON type that is nearest, text for those without one.
+Json toJson(const openvdb::Metadata& metadata) {
+    if (const auto* m = dynamic_cast<const openvdb::BoolMetadata*>(&metadata)) return m->value();
+    if (const auto* m = dynamic_cast<const openvdb::Int32Metadata*>(&metadata)) return m->value();
+    if (const auto* m = dynamic_cast<const openvdb::Int64Metadata*>(&metadata)) return m->value();
+    if (const auto* m = dynamic_cast<const openvdb::FloatMetadata*>(&metadata)) return m->value();
+    if (const auto* m = dynamic_cast<const openvdb::DoubleMetadata*>(&metadata)) return m->value();
+    if (const auto* m = dynamic_cast<const openvdb::Vec3IMetadata*>(&metadata)) {
+        return Json::array({m->value().x(), m->value().y(), m->value().z()});
+    }
+    if (const auto* m = dynamic_cast<const openvdb::Vec3SMetadata*>(&metadata)) {
+        return toJson(openvdb::Vec3d(m->value()));
+    }
+    if (const auto* m = dynamic_cast<const openvdb::Vec3DMetadata*>(&metadata)) {
+        return toJson(m->value());
+    }
+    return metadata.str();
+}
+
+/// A JSON value as one would say it.
+std::string inWords(const Json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number_float()) return formatNumber(value.get<double>(), 8);
+    if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+    if (value.is_array()) {
+        std::vector<std::string> parts;
+        for (const Json& part : value) parts.push_back(inWords(part));
+        return "(" + joined(parts, ", ") + ")";
+    }
+    return value.dump();
+}
+
+std::string boundsInWords(const Json& bounds) {
+    if (bounds.is_null()) return "empty";
+    return inWords(bounds["min"]) + " to " + inWords(bounds["max"]);
+}
+
+void appendLine(std::string& out, const std::string& name, const std::string& value) {
+    constexpr std::size_t kNameWidth = 16;
+    out += "  " + name;
+    out += std::string(name.size() < kNameWidth ? kNameWidth - name.size() : 1, ' ');
+    out += value + '\n';
+}
+
+void appendBlock(std::string& out, const std::string& name, const Json& values) {
+    if (values.empty()) return;
+    out += "  " + name + '\n';
+    for (const auto& [key, value] : values.items())
+        out += "    " + key + ": " + inWords(value) + '\n';
+}
+
+std::string gridInWords(const Json& grid) {
+    std::string out = "\ngrid '" + grid["name"].get<std::string>() + "'\n";
+    appendLine(out, "class", inWords(grid["class"]));
+    appendLine(
+        out, "values",
+        inWords(grid["value_type"]) + (grid["half"].get<bool>() ? ", stored with 16 bits" : ""));
+    appendLine(out, "voxel size", inWords(grid["voxel_size"]));
+    appendLine(out, "index box", boundsInWords(grid["index_bounds"]));
+    appendLine(out, "world box", boundsInWords(grid["world_bounds"]));
+    appendLine(out, "active voxels", inWords(grid["active_voxels"]));
+    appendLine(out, "active tiles", inWords(grid["active_tiles"]));
+    appendLine(out, "memory", formatBytes(grid["memory_bytes"].get<std::int64_t>()));
+    if (grid.contains("compression")) appendLine(out, "compression", inWords(grid["compression"]));
+    if (grid.contains("bandvox")) appendBlock(out, "bandvox", grid["bandvox"]);
+    appendBlock(out, "metadata", grid["metadata"]);
+    return out;
+}
+
+}  // namespace
+
+nlohmann::ordered_json gridReport(const openvdb::GridBase& grid) {
+    Json report;
+    report["name"] = grid.getName();
+    report["type"] = grid.type();
+    report["class"] = openvdb::GridBase::gridClassToString(grid.getGridClass());
+    report["value_type"] = grid.valueType();
+    report["voxel_size"] = toJson(grid.voxelSize());
+
+    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+    if (box.empty()) {
+        report["index_bounds"] = nullptr;
+        report["world_bounds"] = nullptr;
+    } else {
+        const openvdb::BBoxd world = grid.transform().indexToWorld(box);
+        report["index_bounds"] = {{"min", toJson(box.min())}, {"max", toJson(box.max())}};
+        report["world_bounds"] = {{"min", toJson(world.min())}, {"max", toJson(world.max())}};
+    }
+    report["active_voxels"] = grid.activeVoxelCount();
+    report["active_tiles"] = grid.constBaseTree().activeTileCount();
+    report["memory_bytes"] = grid.memUsage();
+
+    Json own = Json::object();
+    Json others = Json::object();
+    for (auto entry = grid.beginMeta(); entry != grid.endMeta(); ++entry) {
+        const std::string& name = entry->first;
+        if (!entry->second) continue;
+        if (name == openvdb::GridBase::META_FILE_COMPRESSION) {
+            report["compression"] = toJson(*entry->second);
+        } else if (name.starts_with(kOwnPrefix)) {
+            own[name.substr(kOwnPrefix.size())] = toJson(*entry->second);
+        } else {
+            others[name] = toJson(*entry->second);
+        }
+    }
+    report["half"] = grid.saveFloatAsHalf();
+    if (!own.empty()) report["bandvox"] = own;
+    report["metadata"] = others;
+    return report;
+}
+
+std::string reportInWords(const nlohmann::ordered_json& report) {
+    const std::size_t count = report["grids"].size();
+    std::string out = report["file"].get<std::string>() + ": " +
+                      formatBytes(report["file_bytes"].get<std::int64_t>()) + ", " +
+                      formatCount(static_cast<std::int64_t>(count), "grid", "grids") + '\n';
+    for (const Json& grid : report["grids"]) out += gridInWords(grid);
+    return out;
+}
+
+}  // namespace bandvox::app

@@ -1,0 +1,69 @@
+// bandvox info: what is in a .vdb file, in words or as JSON.
+
+#include "command_run.h"
+#include "commands.h"
+#include "grid_report.h"
+#include "words.h"
+
+#include <bandvox/grid/density_grid.h>
+#include <bandvox/source/read_mesh.h>
+#include <bandvox/source/shapes.h>
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+
+namespace bandvox::app {
+namespace {
+
+void requireVdb(const std::string& input) {
+    if (!isShape(input) && extensionOf(input) == ".vdb") return;
+    throw Error(
+        ErrorKind::Input,
+        "cannot tell about '" + input + "': info reads .vdb files" +
+            (isShape(input) || isMeshFile(input) ? "; 'bandvox convert' makes one of it" : ""));
+}
+
+}  // namespace
+
+const CommandTable& infoTable() {
+    static const CommandTable table{
+        "info",
+        "Tell what is in a .vdb file.",
+        "Tells of each grid in a .vdb file, of any type: its size in the world and in memory, and "
+        "its metadata. For a density made by bandvox that includes how it was filtered and the "
+        "error that was measured.",
+        {{"INPUT", "A .vdb file."}},
+        {{"json", 0, "", "", "Print JSON instead of words.", "Output"}},
+        {
+            {"bandvox info bunny.vdb", "In words."},
+            {"bandvox info bunny.vdb --json", "As JSON, for another program."},
+        }};
+    return table;
+}
+
+void runInfo(const CommandLine& line) {
+    const std::string input = line.positional(0);
+    requireVdb(input);
+    CommandRun run(line);
+
+    openvdb::GridPtrVec grids;
+    {
+        const ProgressStage stage(run.progress(), "read", 0);
+        grids = readVdb(input);
+    }
+    run.progress().throwIfInterrupted();
+
+    nlohmann::ordered_json report;
+    report["file"] = input;
+    report["file_bytes"] = std::filesystem::file_size(input);
+    report["grids"] = nlohmann::ordered_json::array();
+    for (const auto& grid : grids) report["grids"].push_back(gridReport(*grid));
+    run.count("grids", grids.size());
+    run.finish();
+    writeResult(line.has("json")
+                    ? report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"
+                    : reportInWords(report));
+}
+
+}  // namespace bandvox::app

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace bandvox::app {
+
+/// One option of a command, in words. Help, parser, and whatever else tells users about options
+/// are made from it.
+struct OptionEntry {
+    std::string name;      ///< long name, without the dashes
+    char letter = 0;       ///< short name; 0 for none
+    std::string argument;  ///< what its value is called; empty for a flag
+    std::string standard;  ///< what holds if it is not given; empty for a flag or a required one
+    std::string help;      ///< one or two sentences
+    std::string group;     ///< the heading it stands under
+};
+
+/// One argument that stands without a name.
+struct PositionalEntry {
+    std::string name;  ///< as the help shows it
+    std::string help;
+};
+
+/// A command line that works, and what it does.
+struct ExampleEntry {
+    std::string command;
+    std::string help;
+};
+
+/// All that is said about a command.
+struct CommandTable {
+    std::string name;
+    std::string summary;                       ///< half a line, for the list of commands
+    std::string detail;                        ///< a few sentences
+    std::vector<PositionalEntry> positionals;  ///< all of them required
+    std::vector<OptionEntry> options;          ///< its own, without the shared ones
+    std::vector<ExampleEntry> examples;
+};
+
+/// The options that every command takes.
+const std::vector<OptionEntry>& sharedOptions();
+
+/// A command's own options followed by the shared ones.
+std::vector<OptionEntry> allOptions(const CommandTable& table);
+
+/// What `bandvox COMMAND --help` prints.
+std::string helpText(const CommandTable& table);
+
+/// What `bandvox --help` prints.
+std::string overviewText(const std::vector<const CommandTable*>& tables);
+
+/// The known name that `name` is most likely a slip of, or an empty string if none is near.
+std::string nearestName(std::string_view name, const std::vector<std::string>& known);
+
+}  // namespace bandvox::app

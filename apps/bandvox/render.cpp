@@ -1,0 +1,206 @@
+// bandvox render: a density in a .vdb file to a picture.
+
+#include "command_run.h"
+#include "commands.h"
+#include "words.h"
+
+#include <bandvox/grid/density_grid.h>
+#include <bandvox/render/density_to_image.h>
+#include <bandvox/render/image.h>
+#include <bandvox/source/read_mesh.h>
+#include <bandvox/source/shapes.h>
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <filesystem>
+#include <optional>
+
+namespace bandvox::app {
+namespace {
+
+constexpr int kMostPixels = 65536;  // along a side
+constexpr int kMostSamples = 1024;
+const Range kPositive{.low = 0, .lowOpen = true};
+const Range kColor{.low = 0};
+
+struct RenderRequest {
+    std::string input;
+    std::filesystem::path output;
+    std::optional<std::string> grid;
+    RenderOptions options;
+};
+
+CameraOptions parseCamera(const CommandLine& line) {
+    CameraOptions camera;
+    using Projection = CameraOptions::Projection;
+    camera.projection = std::array{
+        Projection::Perspective,
+        Projection::Orthographic}[line.choice("camera", {"perspective", "orthographic"}, 0)];
+    camera.eye = line.vector("eye");
+    camera.lookat = line.vector("lookat");
+    camera.up = line.vector("up").value_or(camera.up);
+    camera.from = line.vector("from").value_or(camera.from);
+    camera.focal = line.number("focal", kPositive, camera.focal);
+    camera.aperture = line.number("aperture", kPositive, camera.aperture);
+    camera.frame = line.number("frame", {.low = 0}, camera.frame);
+    return camera;
+}
+
+RenderRequest parseRender(const CommandLine& line) {
+    RenderRequest request;
+    request.input = line.positional(0);
+    request.output = line.requiredText("output");
+    requireExtension(request.output, {".png", ".exr"});
+    request.grid = line.text("grid");
+
+    RenderOptions& options = request.options;
+    if (const auto size = line.size("res", 1, kMostPixels)) {
+        options.width = size->x();
+        options.height = size->y();
+    }
+    options.samples = line.wholeNumber("samples", 1, kMostSamples, options.samples);
+    options.camera = parseCamera(line);
+    if (line.has("iso")) options.iso = line.number("iso", {}, 0);
+    options.light = line.vector("light").value_or(options.light);
+    options.color = line.vector("color", kColor).value_or(options.color);
+    options.ambient = line.number("ambient", {.low = 0, .high = 1}, options.ambient);
+    options.background = line.vector("background", kColor);
+    return request;
+}
+
+void requireVdb(const std::string& input) {
+    if (!isShape(input) && extensionOf(input) == ".vdb") return;
+    std::string message = "cannot render '" + input + "': expected a .vdb file";
+    if (isShape(input) || isMeshFile(input)) {
+        message += "; convert it first: bandvox convert " + input + " -o " +
+                   (isShape(input) ? input.substr(input.find(':') + 1)
+                                   : std::filesystem::path(input).stem().string()) +
+                   ".vdb";
+    }
+    throw Error(ErrorKind::Input, message);
+}
+
+std::string listed(const openvdb::GridPtrVec& grids) {
+    if (grids.empty()) return "none";
+    std::vector<std::string> names;
+    for (const auto& grid : grids) {
+        names.push_back("'" + grid->getName() + "' (" + grid->valueType() + ")");
+    }
+    return joined(names, ", ");
+}
+
+/// The grid that is asked for; without a name the first of floats named density, else the only
+/// one of floats.
+openvdb::FloatGrid::Ptr chooseGrid(const openvdb::GridPtrVec& grids,
+                                   const std::optional<std::string>& name,
+                                   const std::string& file) {
+    const std::string wanted = name.value_or("density");
+    openvdb::FloatGrid::Ptr only;
+    std::size_t floats = 0;
+    for (const auto& grid : grids) {
+        const auto floatGrid = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+        if (!floatGrid) continue;
+        if (grid->getName() == wanted) return floatGrid;
+        only = floatGrid;
+        ++floats;
+    }
+    if (!name && floats == 1) return only;
+    throw Error(ErrorKind::Input,
+                "'" + file + "' has the grids " + listed(grids) + "; expected " +
+                    (name ? "a float grid '" + *name + "'"
+                          : "a float grid 'density', or one float grid only (--grid names one)"));
+}
+
+}  // namespace
+
+const CommandTable& renderTable() {
+    static const CommandTable table = [] {
+        const RenderOptions options;
+        const CameraOptions& camera = options.camera;
+        const auto vector = [](const openvdb::Vec3d& v) {
+            return formatNumber(v.x()) + "," + formatNumber(v.y()) + "," + formatNumber(v.z());
+        };
+        const std::string picture = "Picture";
+        const std::string view = "Camera";
+        const std::string look = "Surface and light";
+        return CommandTable{
+            "render",
+            "Draw the surface of a density (.vdb) as a picture (.png, .exr).",
+            "Draws the surface where the density is 0.5, or as given. Lines of sight are followed "
+            "to the band-limited density that the grid stands for, and the normal is its "
+            "gradient, so the picture shows no voxels. An .exr also holds depth (Z), normals (N) "
+            "and positions (P).",
+            {{"INPUT", "A .vdb file."}},
+            {
+                {"output", 'o', "FILE", "", "The .png or .exr file to write. Needed.", picture},
+                {"res", 0, "WxH",
+                 std::to_string(options.width) + "x" + std::to_string(options.height),
+                 "Width and height, pixels.", picture},
+                {"samples", 0, "N", std::to_string(options.samples), "Lines of sight per pixel.",
+                 picture},
+                {"background", 0, "R,G,B", "transparent", "Linear colour behind the object.",
+                 picture},
+                {"camera", 0, "KIND", "perspective", "perspective or orthographic.", view},
+                {"eye", 0, "X,Y,Z", "chosen", "Where the camera is, world.", view},
+                {"lookat", 0, "X,Y,Z", "the middle", "What it looks at, world.", view},
+                {"up", 0, "X,Y,Z", vector(camera.up), "What is up in the picture.", view},
+                {"from", 0, "X,Y,Z", vector(camera.from),
+                 "Direction from the object to the camera, if --eye is not given.", view},
+                {"focal", 0, "MM", formatNumber(camera.focal), "Focal length in mm (perspective).",
+                 view},
+                {"aperture", 0, "MM", formatNumber(camera.aperture),
+                 "Width of the film in mm (perspective).", view},
+                {"frame", 0, "W", "fits",
+                 "Width of the view in world units (orthographic); 0 fits the object.", view},
+                {"grid", 0, "NAME", "density, or the only one of floats", "Which grid to draw.",
+                 look},
+                {"iso", 0, "D", "as stored, else 0.5", "Density that is the surface.", look},
+                {"light", 0, "X,Y,Z", vector(options.light),
+                 "Direction to the light, along the camera's right, up and back.", look},
+                {"color", 0, "R,G,B", vector(options.color), "Linear colour of the surface.", look},
+                {"ambient", 0, "A", formatNumber(options.ambient), "Light from everywhere, 0 to 1.",
+                 look},
+            },
+            {
+                {"bandvox render bunny.vdb -o bunny.png",
+                 "The whole object, on a transparent ground."},
+                {"bandvox render bunny.vdb -o bunny.exr --res 1920x1080 --samples 4",
+                 "With depth, normals and positions, four lines of sight per pixel."},
+                {"bandvox render bunny.vdb -o front.png --camera orthographic --from 0,0,1",
+                 "A parallel view along -z."},
+            }};
+    }();
+    return table;
+}
+
+void runRender(const CommandLine& line) {
+    const RenderRequest request = parseRender(line);
+    requireVdb(request.input);
+    CommandRun run(line);
+    AtomicFile output(request.output);
+
+    openvdb::GridPtrVec grids;
+    {
+        const ProgressStage stage(run.progress(), "read", 0);
+        grids = readVdb(request.input);
+    }
+    const openvdb::FloatGrid::Ptr grid = chooseGrid(grids, request.grid, request.input);
+    grids.clear();
+    run.say("read     " + request.input + ": grid '" + grid->getName() + "', " +
+            formatCount(static_cast<std::int64_t>(grid->activeVoxelCount()), "active voxel",
+                        "active voxels"));
+
+    const RenderResult result = densityToImage(grid, request.options, run.progress());
+    run.say("drawn    " + std::to_string(result.image.width) + " x " +
+            std::to_string(result.image.height) + " pixels, " +
+            formatCount(result.rays, "line of sight", "lines of sight") + ", " +
+            formatCount(result.hits, "hit", "hits"));
+    run.count("rays", result.rays);
+    run.count("hits", result.hits);
+
+    run.writeOutput(output, request.output,
+                    [&](const std::filesystem::path& path) { writeImage(path, result.image); });
+}
+
+}  // namespace bandvox::app

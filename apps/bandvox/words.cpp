@@ -1,0 +1,53 @@
+#include "words.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace bandvox::app {
+
+std::string formatNumber(double value, int digits) {
+    std::array<char, 64> buffer{};
+    std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, value);
+    return buffer.data();
+}
+
+std::string formatVector(const openvdb::Vec3d& vector, int digits) {
+    return "(" + formatNumber(vector.x(), digits) + ", " + formatNumber(vector.y(), digits) + ", " +
+           formatNumber(vector.z(), digits) + ")";
+}
+
+std::string formatBytes(std::int64_t bytes) {
+    if (bytes < 1000) return std::to_string(bytes) + " bytes";
+    constexpr std::array kUnits{"kB", "MB", "GB", "TB"};
+    double size = static_cast<double>(bytes) / 1000;
+    std::size_t unit = 0;
+    while (size >= 999.5 && unit + 1 < kUnits.size()) {
+        size /= 1000;
+        ++unit;
+    }
+    return formatNumber(size, 3) + " " + kUnits[unit];
+}
+
+std::string formatCount(std::int64_t count, const std::string& one, const std::string& many) {
+    return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+std::string joined(const std::vector<std::string>& strings, const std::string& separator) {
+    std::string all;
+    for (std::size_t i = 0; i < strings.size(); ++i) {
+        if (i > 0) all += separator;
+        all += strings[i];
+    }
+    return all;
+}
+
+std::string lowerCase(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    return text;
+}
+
+}  // namespace bandvox::app

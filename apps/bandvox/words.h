@@ -1,0 +1,30 @@
+#pragma once
+
+#include <openvdb/Types.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace bandvox::app {
+
+/// A number with up to `digits` significant digits.
+std::string formatNumber(double value, int digits = 6);
+
+/// "(x, y, z)".
+std::string formatVector(const openvdb::Vec3d& vector, int digits = 6);
+
+/// A size with a unit that keeps it readable: "512 bytes", "3.2 MB" (powers of ten).
+std::string formatBytes(std::int64_t bytes);
+
+/// "1 hole", "3 holes": `one` is the word for one of them, `many` for several.
+std::string formatCount(std::int64_t count, const std::string& one, const std::string& many);
+
+/// All strings in one, with `separator` between them.
+std::string joined(const std::vector<std::string>& strings, const std::string& separator);
+
+/// ASCII letters in lower case.
+std::string lowerCase(std::string text);
+
+}  // namespace bandvox::app

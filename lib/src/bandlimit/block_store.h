@@ -1,0 +1,67 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <memory>
+#include <vector>
+
+namespace bandvox {
+
+using DensityLeaf = openvdb::FloatTree::LeafNodeType;
+
+/// A cube of 8³ voxels that all have one whole value.
+struct ConstantBlock {
+    openvdb::Coord origin;
+    float value;
+};
+
+/// The part of a grid that one column of tiles has made.
+struct ColumnBlocks {
+    std::vector<std::unique_ptr<DensityLeaf>> inner;   ///< complete
+    std::vector<std::unique_ptr<DensityLeaf>> border;  ///< may go on in other columns
+    std::vector<ConstantBlock> constant;               ///< complete
+};
+
+/// Leaf nodes of one column of tiles while they are made.
+///
+/// Tiles do not respect the borders of leaf nodes, so a block may be filled in several pieces,
+/// and blocks at the column's border are completed by its neighbours (see assembleGrid).
+class BlockStore {
+  public:
+    /// `region`: the column's voxels. `threshold`: values nearer to a whole number than this
+    /// are that number.
+    BlockStore(const openvdb::CoordBBox& region, double threshold);
+
+    /// Sets the voxels of `box`, which lies in the region and in one block, to one value.
+    void fill(const openvdb::CoordBBox& box, float value);
+
+    /// Sets the voxels of `box`, which lies in the region and in one block; the value at its
+    /// first voxel is values[0], steps along x and y are `xStride` and `yStride`.
+    void copy(const openvdb::CoordBBox& box, const float* values, std::ptrdiff_t xStride,
+              std::ptrdiff_t yStride);
+
+    /// Sorts the blocks that end before voxel `x`. They must not be touched again. Voxels never
+    /// set are 0.
+    void finishBefore(int x);
+
+    /// What was made, once all is finished.
+    ColumnBlocks take() { return std::move(mBlocks); }
+
+  private:
+    DensityLeaf& leafAt(const openvdb::Coord& voxel);
+    std::size_t indexOf(const openvdb::Coord& voxel) const;
+    void finish(std::unique_ptr<DensityLeaf> leaf);
+
+    openvdb::CoordBBox mRegion;
+    float mThreshold;
+    openvdb::Coord mFirstBlock;  // block coordinates: voxel / 8
+    openvdb::Coord mBlockCount;
+    int mFinished = 0;  // slabs of blocks along x
+    std::vector<std::unique_ptr<DensityLeaf>> mLeaves;
+    ColumnBlocks mBlocks;
+};
+
+/// The whole number that all values of a leaf are within `threshold` of, if there is one.
+bool isConstant(const DensityLeaf& leaf, float threshold, float& value);
+
+}  // namespace bandvox

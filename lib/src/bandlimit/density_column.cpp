@@ -1,0 +1,223 @@
+#include "bandlimit/density_column.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace bandvox {
+
+namespace {
+
+double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+// Calls visit(box) for the part of each 8³ block that lies in `box`.
+template <typename Visitor>
+void forEachBlock(const openvdb::CoordBBox& box, const Visitor& visit) {
+    constexpr int kMask = DensityLeaf::DIM - 1;
+    const openvdb::Coord low = box.min();
+    const openvdb::Coord high = box.max();
+    for (int x = low.x(); x <= high.x(); x = (x | kMask) + 1) {
+        for (int y = low.y(); y <= high.y(); y = (y | kMask) + 1) {
+            for (int z = low.z(); z <= high.z(); z = (z | kMask) + 1) {
+                visit(openvdb::CoordBBox(x, y, z, std::min(x | kMask, high.x()),
+                                         std::min(y | kMask, high.y()),
+                                         std::min(z | kMask, high.z())));
+            }
+        }
+    }
+}
+
+}  // namespace
+
+void ColumnStatistics::add(const ColumnStatistics& other) {
+    closureError = std::max(closureError, other.closureError);
+    minimum = std::min(minimum, other.minimum);
+    maximum = std::max(maximum, other.maximum);
+    highestWinding = std::max(highestWinding, other.highestWinding);
+    lowestWinding = std::min(lowestWinding, other.lowestWinding);
+    tiles += other.tiles;
+    samples += other.samples;
+    spreadSeconds += other.spreadSeconds;
+    transformSeconds += other.transformSeconds;
+}
+
+DensityColumn::DensityColumn(const BoundarySource& source, const TilePlan& plan,
+                             const TileLayout& layout, const TileFilter& filter)
+    : mSource(source),
+      mPlan(plan),
+      mLayout(layout),
+      mFilter(filter),
+      mBuffer(filter.allocate()),
+      mBufferSize(filter.bufferSize()),
+      mNear(plan.halo, plan.interior),
+      mSum(static_cast<std::size_t>(plan.interior) * plan.interior),
+      mDensity(mSum.size() * plan.interior) {}
+
+ColumnBlocks DensityColumn::fill(int y, int z, std::span<const std::uint32_t> elements,
+                                 ColumnStatistics& statistics, const Progress& progress) {
+    const openvdb::Coord low = mLayout.tileOrigin({0, y, z});
+    const openvdb::Coord high = mLayout.tileOrigin({mLayout.count.x(), y + 1, z + 1});
+    BlockStore store(openvdb::CoordBBox(low, high - openvdb::Coord(1)), mPlan.threshold);
+    const ElementLists lists = sortByTile(elements);
+    std::fill(mSum.begin(), mSum.end(), 0.0);
+    for (int x = 0; x < mLayout.count.x(); ++x) {
+        progress.throwIfInterrupted();
+        const openvdb::Coord tile(x, y, z);
+        const openvdb::Coord origin = mLayout.tileOrigin(tile);
+        if (lists[x].empty() || !sampleTile(tile, lists[x], statistics)) {
+            snapAll(statistics);
+            storeFarTile(origin, store);
+        } else {
+            storeTile(origin, store);
+        }
+        store.finishBefore(origin.x() + mPlan.interior);
+    }
+    // Behind the object the density is 0 again.
+    snapAll(statistics);
+    statistics.closureError = std::max(statistics.closureError, std::abs(mSum[0]));
+    store.finishBefore(high.x() + DensityLeaf::DIM);
+    return store.take();
+}
+
+DensityColumn::ElementLists DensityColumn::sortByTile(
+    std::span<const std::uint32_t> elements) const {
+    ElementLists lists(mLayout.count.x());
+    for (const std::uint32_t element : elements) {
+        const openvdb::BBoxd bounds = mSource.elementBounds(element);
+        const TileRange range =
+            tilesTouching(mLayout, mPlan.halo, 0, bounds.min().x() / mLayout.voxelSize,
+                          bounds.max().x() / mLayout.voxelSize);
+        for (int x = range.first; x <= range.last; ++x) lists[x].push_back(element);
+    }
+    return lists;
+}
+
+// Computes the tile's densities into mDensity. Returns false if no part of the surface is there.
+bool DensityColumn::sampleTile(const openvdb::Coord& tile,
+                               const std::vector<std::uint32_t>& elements,
+                               ColumnStatistics& statistics) {
+    // Collect the quadrature points that matter to the tile.
+    const double start = now();
+    const openvdb::Vec3d offset = mFilter.regionOffset();
+    const SamplingRegion region{mLayout.voxelSize, mLayout.tileOrigin(tile).asVec3d() + offset,
+                                openvdb::Vec3d(mPlan.side)};
+    mSamples.clear();
+    for (const std::uint32_t element : elements) {
+        mSource.sampleElement(element, region, mPlan.quadrature, mSamples);
+    }
+    if (mSamples.empty()) return false;
+    mNear.mark(mSamples, -offset);
+
+    // Filter them. A surface parallel to x makes no differences.
+    const bool hasDifferences =
+        std::any_of(mSamples.begin(), mSamples.end(),
+                    [](const SurfaceSample& sample) { return sample.areaVector.x() != 0; });
+    double spread = now();
+    if (hasDifferences) {
+        std::fill_n(mBuffer.get(), mBufferSize, 0.0F);
+        mFilter.spread(mSamples, mBuffer.get());
+        spread = now();
+        mFilter.apply(mBuffer.get());
+    }
+    statistics.spreadSeconds += spread - start;
+    statistics.transformSeconds += now() - spread;
+    statistics.samples += static_cast<std::int64_t>(mSamples.size());
+    ++statistics.tiles;
+    sumTile(hasDifferences, statistics);
+    return true;
+}
+
+// The running sum along x, from the tile before; cells far from the surface are snapped.
+void DensityColumn::sumTile(bool hasDifferences, ColumnStatistics& statistics) {
+    const int interior = mPlan.interior;
+    constexpr int kCell = NearCells::kCell;
+    for (int x = 0; x < interior; ++x) {
+        for (int y = 0; y < interior && hasDifferences; ++y) {
+            const float* differences = mFilter.row(mBuffer.get(), x, y);
+            double* sum = mSum.data() + static_cast<std::size_t>(y) * interior;
+            for (int z = 0; z < interior; ++z) sum[z] += differences[z];
+        }
+        for (int y = 0; y < mNear.count(); ++y) {
+            for (int z = 0; z < mNear.count(); ++z) {
+                if (!mNear.isNear(x / kCell, y, z)) snapCell(y, z, statistics);
+            }
+        }
+        float* density = mDensity.data() + static_cast<std::size_t>(x) * mSum.size();
+        for (std::size_t i = 0; i < mSum.size(); ++i) density[i] = static_cast<float>(mSum[i]);
+    }
+    const auto [low, high] = std::minmax_element(mDensity.begin(), mDensity.end());
+    statistics.minimum = std::min<double>(statistics.minimum, *low);
+    statistics.maximum = std::max<double>(statistics.maximum, *high);
+}
+
+// Makes the sums of one cell's rows the whole number that they stand for, and measures how far
+// they were from it.
+void DensityColumn::snapCell(int y, int z, ColumnStatistics& statistics) {
+    const int interior = mPlan.interior;
+    constexpr int kCell = NearCells::kCell;
+    const int yEnd = std::min((y + 1) * kCell, interior);
+    const int zEnd = std::min((z + 1) * kCell, interior);
+    const double whole =
+        std::round(mSum[static_cast<std::size_t>(y) * kCell * interior + z * kCell]);
+    for (int i = y * kCell; i < yEnd; ++i) {
+        double* sum = mSum.data() + static_cast<std::size_t>(i) * interior;
+        for (int j = z * kCell; j < zEnd; ++j) {
+            statistics.closureError = std::max(statistics.closureError, std::abs(sum[j] - whole));
+            sum[j] = whole;
+        }
+    }
+    statistics.highestWinding = std::max(statistics.highestWinding, static_cast<int>(whole));
+    statistics.lowestWinding = std::min(statistics.lowestWinding, static_cast<int>(whole));
+}
+
+// The same for a whole tile, which then has one value.
+void DensityColumn::snapAll(ColumnStatistics& statistics) {
+    const double whole = mSum[0];
+    for (int y = 0; y < mNear.count(); ++y) {
+        for (int z = 0; z < mNear.count(); ++z) snapCell(y, z, statistics);
+    }
+    for (double& sum : mSum) {
+        statistics.closureError =
+            std::max(statistics.closureError, std::abs(sum - std::round(whole)));
+        sum = std::round(whole);
+    }
+}
+
+void DensityColumn::storeTile(const openvdb::Coord& tileOrigin, BlockStore& store) const {
+    const int interior = mPlan.interior;
+    const openvdb::CoordBBox box = openvdb::CoordBBox::createCube(tileOrigin, interior);
+    forEachBlock(box, [&](const openvdb::CoordBBox& part) {
+        const openvdb::Coord at = part.min() - tileOrigin;
+        const openvdb::Coord last = part.max() - tileOrigin;
+        // A block whose cells are all far is constant.
+        constexpr int kCell = NearCells::kCell;
+        bool isNear = false;
+        for (int x = at.x() / kCell; x <= last.x() / kCell; ++x) {
+            for (int y = at.y() / kCell; y <= last.y() / kCell; ++y) {
+                for (int z = at.z() / kCell; z <= last.z() / kCell; ++z) {
+                    isNear = isNear || mNear.isNear(x, y, z);
+                }
+            }
+        }
+        const float* first = mDensity.data() +
+                             (static_cast<std::size_t>(at.x()) * interior + at.y()) * interior +
+                             at.z();
+        if (isNear) {
+            store.copy(part, first, static_cast<std::ptrdiff_t>(interior) * interior, interior);
+        } else {
+            store.fill(part, *first);
+        }
+    });
+}
+
+void DensityColumn::storeFarTile(const openvdb::Coord& tileOrigin, BlockStore& store) const {
+    const auto value = static_cast<float>(mSum[0]);
+    if (value == 0) return;
+    forEachBlock(openvdb::CoordBBox::createCube(tileOrigin, mPlan.interior),
+                 [&](const openvdb::CoordBBox& part) { store.fill(part, value); });
+}
+
+}  // namespace bandvox

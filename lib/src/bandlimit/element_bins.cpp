@@ -1,0 +1,53 @@
+#include "bandlimit/element_bins.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bandvox {
+
+TileRange tilesTouching(const TileLayout& layout, int halo, int axis, double low, double high) {
+    const double first = std::floor((low - halo - 1 - layout.origin[axis]) / layout.interior);
+    const double last = std::floor((high + halo + 1 - layout.origin[axis]) / layout.interior);
+    return {std::max(0, static_cast<int>(first)),
+            std::min(layout.count[axis] - 1, static_cast<int>(last))};
+}
+
+ElementBins::ElementBins(const BoundarySource& source, const TileLayout& layout, int halo)
+    : mZCount(layout.count.z()),
+      mStart(static_cast<std::size_t>(layout.count.y()) * layout.count.z() + 1, 0) {
+    const auto forEachColumn = [&](std::size_t element, const auto& visit) {
+        const openvdb::BBoxd bounds = source.elementBounds(element);
+        const openvdb::Vec3d low = bounds.min() / layout.voxelSize;
+        const openvdb::Vec3d high = bounds.max() / layout.voxelSize;
+        const TileRange y = tilesTouching(layout, halo, 1, low.y(), high.y());
+        const TileRange z = tilesTouching(layout, halo, 2, low.z(), high.z());
+        for (int i = y.first; i <= y.last; ++i) {
+            for (int j = z.first; j <= z.last; ++j) {
+                visit(static_cast<std::size_t>(i) * mZCount + j);
+            }
+        }
+    };
+    // Count, then place: a sort by column that keeps the elements' order.
+    for (std::size_t e = 0; e < source.elementCount(); ++e) {
+        forEachColumn(e, [&](std::size_t column) { ++mStart[column + 1]; });
+    }
+    for (std::size_t c = 1; c < mStart.size(); ++c) mStart[c] += mStart[c - 1];
+    mElements.resize(mStart.back());
+    std::vector<std::uint64_t> next(mStart.begin(), mStart.end() - 1);
+    for (std::size_t e = 0; e < source.elementCount(); ++e) {
+        forEachColumn(e, [&](std::size_t column) {
+            mElements[next[column]++] = static_cast<std::uint32_t>(e);
+        });
+    }
+}
+
+std::span<const std::uint32_t> ElementBins::column(int y, int z) const {
+    const std::size_t index = static_cast<std::size_t>(y) * mZCount + z;
+    return {mElements.data() + mStart[index], mElements.data() + mStart[index + 1]};
+}
+
+std::size_t ElementBins::memory() const {
+    return mStart.size() * sizeof(mStart[0]) + mElements.size() * sizeof(mElements[0]);
+}
+
+}  // namespace bandvox

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "bandlimit/tile_plan.h"
+
+#include <bandvox/source/boundary_source.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace bandvox {
+
+/// Which elements of a surface may matter to each column of tiles (tiles that differ only in x).
+class ElementBins {
+  public:
+    ElementBins(const BoundarySource& source, const TileLayout& layout, int halo);
+
+    /// Elements for the column of tiles at (y, z), in rising order.
+    std::span<const std::uint32_t> column(int y, int z) const;
+
+    /// What the bins hold, bytes.
+    std::size_t memory() const;
+
+  private:
+    int mZCount;
+    std::vector<std::uint64_t> mStart;  // of each column in mElements, and the end
+    std::vector<std::uint32_t> mElements;
+};
+
+/// The tiles along `axis` whose interior, widened by the halo and a voxel, touches an interval.
+struct TileRange {
+    int first, last;  ///< both included
+};
+TileRange tilesTouching(const TileLayout& layout, int halo, int axis, double low, double high);
+
+}  // namespace bandvox

@@ -1,0 +1,55 @@
+#include "bandlimit/near_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bandvox {
+
+namespace {
+
+// Quadrature points of a large element may lie this far apart, voxels; between them the surface
+// is unmarked.
+constexpr int kSampleGap = 3;
+
+}  // namespace
+
+NearCells::NearCells(int halo, int interior)
+    : mReach((halo + kSampleGap + kCell - 1) / kCell + 1),
+      mCount((interior + kCell - 1) / kCell),
+      mSide(mCount + 2 * mReach),
+      mMarked(static_cast<std::size_t>(mSide) * mSide * mSide),
+      mDilated(mMarked.size()) {}
+
+void NearCells::mark(std::span<const SurfaceSample> samples, const openvdb::Vec3d& interiorAt) {
+    std::fill(mMarked.begin(), mMarked.end(), std::uint8_t{0});
+    const openvdb::Vec3f shift(openvdb::Vec3d(mReach * kCell) - interiorAt);
+    for (const SurfaceSample& sample : samples) {
+        std::size_t index = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const int cell =
+                static_cast<int>((sample.position[axis] + shift[axis]) * (1.0F / kCell));
+            index = index * mSide + std::clamp(cell, 0, mSide - 1);
+        }
+        mMarked[index] = 1;
+    }
+    dilate(1);
+    dilate(mSide);
+    dilate(static_cast<std::size_t>(mSide) * mSide);
+}
+
+// Widens what is marked by mReach cells along the axis of that stride.
+void NearCells::dilate(std::size_t stride) {
+    mDilated = mMarked;
+    for (int step = 1; step <= mReach; ++step) {
+        const std::size_t shift = step * stride;
+        // A shift across the border of a row marks cells that are far; that costs a little work
+        // and changes nothing in what is stored.
+        for (std::size_t i = shift; i < mMarked.size(); ++i) {
+            mDilated[i] |= mMarked[i - shift];
+            mDilated[i - shift] |= mMarked[i];
+        }
+    }
+    mMarked.swap(mDilated);
+}
+
+}  // namespace bandvox

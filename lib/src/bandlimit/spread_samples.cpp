@@ -1,0 +1,92 @@
+#include "bandlimit/spread_samples.h"
+
+#include <cmath>
+
+// The same loop for several instruction sets, chosen when the program starts. The sanitizers'
+// runtimes are not ready yet at that moment.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
+#define BANDVOX_FOR_EACH_INSTRUCTION_SET \
+    __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
+#else
+#define BANDVOX_FOR_EACH_INSTRUCTION_SET
+#endif
+
+namespace bandvox {
+
+namespace {
+
+struct KernelPolynomials {
+    const float* coefficients;
+    int degree;
+    int width;
+};
+
+// Horner's rule for all nodes along one axis at once. Returns the first node.
+template <int kLanes>
+[[gnu::always_inline]] inline int axisWeights(const KernelPolynomials& kernel, float x,
+                                              float* weights) {
+    const float left = x - 0.5F * static_cast<float>(kernel.width);
+    const int truncated = static_cast<int>(left);  // left ≥ 0
+    const int first = truncated + (static_cast<float>(truncated) < left ? 1 : 0);
+    const float z = 2 * (static_cast<float>(first) - left) - 1;
+    float sum[kLanes];
+    for (int j = 0; j < kLanes; ++j) sum[j] = kernel.coefficients[j];
+    for (int p = 1; p <= kernel.degree; ++p) {
+        const float* row = kernel.coefficients + p * SpreadingKernel::kPaddedWidth;
+        for (int j = 0; j < kLanes; ++j) sum[j] = sum[j] * z + row[j];
+    }
+    for (int j = 0; j < kLanes; ++j) weights[j] = sum[j];
+    return first;
+}
+
+template <int kLanes>
+[[gnu::always_inline]] inline void spread(std::span<const SurfaceSample> samples, float offset,
+                                          const KernelPolynomials& kernel,
+                                          const SpreadLattice& lattice) {
+    alignas(64) float wx[kLanes], wy[kLanes], wz[kLanes];
+    for (const SurfaceSample& sample : samples) {
+        const float weight = -sample.areaVector.x();
+        if (weight == 0) continue;
+        const int x = axisWeights<kLanes>(kernel, sample.position.x() + offset, wx);
+        const int y = axisWeights<kLanes>(kernel, sample.position.y() + offset, wy);
+        const int z = axisWeights<kLanes>(kernel, sample.position.z() + offset, wz);
+        for (int i = 0; i < kernel.width; ++i) {
+            float* row =
+                lattice.nodes +
+                (static_cast<std::ptrdiff_t>(x + i) * lattice.yCount + y) * lattice.zStride + z;
+            const float plane = weight * wx[i];
+            for (int j = 0; j < kernel.width; ++j, row += lattice.zStride) {
+                const float line = plane * wy[j];
+                for (int k = 0; k < kLanes; ++k) row[k] += line * wz[k];
+            }
+        }
+    }
+}
+
+BANDVOX_FOR_EACH_INSTRUCTION_SET
+void spreadNarrow(std::span<const SurfaceSample> samples, float offset,
+                  const KernelPolynomials& kernel, const SpreadLattice& lattice) {
+    spread<8>(samples, offset, kernel, lattice);
+}
+
+BANDVOX_FOR_EACH_INSTRUCTION_SET
+void spreadWide(std::span<const SurfaceSample> samples, float offset,
+                const KernelPolynomials& kernel, const SpreadLattice& lattice) {
+    spread<16>(samples, offset, kernel, lattice);
+}
+
+}  // namespace
+
+void spreadSamples(std::span<const SurfaceSample> samples, float offset,
+                   const SpreadingKernel& kernel, const SpreadLattice& lattice) {
+    const KernelPolynomials polynomials{kernel.polynomials().data(), kernel.polynomialDegree(),
+                                        kernel.width()};
+    if (kernel.paddedWidth() == 8) {
+        spreadNarrow(samples, offset, polynomials, lattice);
+    } else {
+        spreadWide(samples, offset, polynomials, lattice);
+    }
+}
+
+}  // namespace bandvox

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "bandlimit/tile_plan.h"
+#include "spectral/fft.h"
+
+#include <bandvox/source/boundary_source.h>
+
+#include <span>
+#include <vector>
+
+namespace bandvox {
+
+/// Filters one tile at a time: surface samples in, differences of the density along x out.
+///
+/// Immutable once built, and shared by all threads; each thread has a buffer of its own.
+class TileFilter {
+  public:
+    explicit TileFilter(const TilePlan& plan);
+
+    /// A buffer for one thread's work, all zero.
+    FftBuffer allocate() const { return mFft.allocate(); }
+    std::size_t bufferSize() const { return mFft.bufferSize(); }
+
+    /// Where, in voxels from the first voxel of a tile's interior, the samples that matter to it
+    /// begin. They extend over `plan.side` voxels along each axis.
+    openvdb::Vec3d regionOffset() const;
+
+    /// Spreads the samples (positions from the region's beginning) onto the buffer, which must
+    /// be all zero.
+    void spread(std::span<const SurfaceSample> samples, float* buffer) const;
+
+    /// Turns what was spread into f~(x, y, z) - f~(x - 1, y, z). Elsewhere than in the interior,
+    /// what is left in the buffer has no meaning.
+    void apply(float* buffer) const;
+
+    /// The differences along z at (x, y, 0) of the interior.
+    const float* row(const float* buffer, int x, int y) const {
+        return buffer +
+               (static_cast<std::size_t>(x + mFirst + 1) * mFft.yCount() + y + mFirst) *
+                   mFft.zStride() +
+               mFirst;
+    }
+
+  private:
+    void fold(float* buffer) const;
+    void multiply(float* buffer) const;
+
+    const TilePlan& mPlan;
+    int mShift;   // nodes before the region, for the kernel's left half
+    int mMargin;  // nodes behind it, for the shift and its right half
+    int mFirst;   // where the interior begins in y and z
+    const RealFft3& mFft;
+    std::vector<float> mDifference;  // [side][2]: (1 - e^{-2πik}) / (2πik) along x, complex
+    std::vector<float> mTransfer;  // [side/2 + 1]³: H(|k|) / (ψ̂ ψ̂ ψ̂) / side³, Nyquist 0
+};
+
+}  // namespace bandvox

@@ -1,0 +1,96 @@
+#include "bandlimit/tile_plan.h"
+
+#include "bandlimit/surface_quadrature.h"
+
+#include <bandvox/core/error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace bandvox {
+
+namespace {
+
+// Shares of the tolerance. What is left covers rounding, and that the errors add up.
+constexpr double kHaloShare = 1.0 / 4;
+constexpr double kKernelShare = 1.0 / 8;
+constexpr double kQuadratureShare = 1.0 / 4;
+constexpr double kStorageShare = 1.0 / 2;
+
+// 64³ samples stay in a core's second-level cache, and 64 is the size that transforms fastest
+// per sample. Where the halo leaves too little of it, the next power of two is better.
+constexpr int kTileSides[] = {64, 128, 256};
+constexpr double kSmallestInteriorShare = 0.4;
+
+constexpr double kLargestIndex = 1 << 30;
+
+int chooseSide(int halo) {
+    for (const int side : kTileSides) {
+        if (side - 2 * halo >= kSmallestInteriorShare * side) return side;
+    }
+    return 2 * kTileSides[2];
+}
+
+SpreadingKernel chooseKernel(const ExponentialFilter& filter, double tolerance) {
+    // What the lattice cannot hold, it cannot be spread to either, and trying amplifies rounding:
+    // ask no more of the kernel than a tenth of what the filter leaves at Nyquist.
+    for (double asked = std::max(tolerance, 0.1 * filter.atNyquist());; asked *= 2) {
+        try {
+            return SpreadingKernel::forFilter(filter, asked);
+        } catch (const Error&) {
+            if (asked > 1) throw;
+        }
+    }
+}
+
+}  // namespace
+
+TilePlan makeTilePlan(const DensityOptions& options) {
+    const int halo =
+        static_cast<int>(std::ceil(filterReach(options.filter, kHaloShare * options.tolerance)));
+    SpreadingKernel kernel = chooseKernel(options.filter, kKernelShare * options.tolerance);
+    // Nodes are counted from half a kernel's width before the tile, which has to be halo.
+    const int usedHalo = std::max(halo, kernel.width() / 2 + 2);
+    const int side = options.tile > 0 ? options.tile : chooseSide(usedHalo);
+    if (side - 2 * usedHalo < 2) {
+        throw Error(ErrorKind::Usage,
+                    "a tile of " + std::to_string(side) +
+                        " voxels does not hold its halo: the "
+                        "filter reaches " +
+                        std::to_string(usedHalo) +
+                        " voxels on each side at this tolerance, so it must be at least " +
+                        std::to_string(2 * usedHalo + 2));
+    }
+    return TilePlan{options.filter,
+                    options.tolerance,
+                    std::move(kernel),
+                    chooseQuadrature(options.filter, kQuadratureShare * options.tolerance),
+                    usedHalo,
+                    side,
+                    side - 2 * usedHalo,
+                    kStorageShare * options.tolerance};
+}
+
+TileLayout layOutTiles(const openvdb::BBoxd& bounds, double voxelSize, const TilePlan& plan) {
+    const openvdb::Vec3d low = bounds.min() / voxelSize;
+    const openvdb::Vec3d high = bounds.max() / voxelSize;
+    openvdb::Coord origin, count;
+    for (int axis = 0; axis < 3; ++axis) {
+        // Written so that a NaN fails too.
+        if (!(low[axis] > -kLargestIndex && high[axis] < kLargestIndex)) {
+            throw Error(ErrorKind::Usage, "with voxels of " + std::to_string(voxelSize) +
+                                              " world units the object reaches index " +
+                                              std::to_string(std::max(-low[axis], high[axis])) +
+                                              ", and indices must stay below 2^30");
+        }
+        // The density reaches as far as the filter does; one voxel more makes the first
+        // difference start from 0.
+        origin[axis] = static_cast<int>(std::floor(low[axis])) - plan.halo - 1;
+        const int end = static_cast<int>(std::ceil(high[axis])) + plan.halo + 2;
+        count[axis] = (end - origin[axis] + plan.interior - 1) / plan.interior;
+    }
+    return TileLayout{voxelSize, origin, count, plan.interior};
+}
+
+}  // namespace bandvox

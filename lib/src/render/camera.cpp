@@ -1,0 +1,142 @@
+#include <bandvox/core/error.h>
+#include <bandvox/render/camera.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace bandvox {
+
+namespace {
+
+// Room left around a framed object, relative to its size in the picture.
+constexpr double kMargin = 1.04;
+
+// Directions closer to each other than this, as a sine, do not span a plane.
+constexpr double kSmallestSine = 1e-6;
+
+[[noreturn]] void refuse(const char* what, double found, const char* expected) {
+    std::ostringstream message;
+    message << "the camera's " << what << " is " << found << "; it must be " << expected;
+    throw Error(ErrorKind::Usage, message.str());
+}
+
+bool isFinite(const openvdb::Vec3d& v) {
+    return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+openvdb::Vec3d requireDirection(const openvdb::Vec3d& v, const char* what) {
+    const double length = v.length();
+    if (!isFinite(v) || !(length > 0)) {
+        std::ostringstream message;
+        message << "the camera's " << what << " is " << v << "; it must not be zero, nor infinite";
+        throw Error(ErrorKind::Usage, message.str());
+    }
+    return v / length;
+}
+
+// The corners of a box relative to `center`, along the camera's axes: right, up, forward.
+std::array<openvdb::Vec3d, 8> cornersFrom(const openvdb::Vec3d& center, const Camera& camera,
+                                          const openvdb::BBoxd& box) {
+    std::array<openvdb::Vec3d, 8> corners;
+    for (int i = 0; i < 8; ++i) {
+        const openvdb::Vec3d corner(i & 1 ? box.max()[0] : box.min()[0],
+                                    i & 2 ? box.max()[1] : box.min()[1],
+                                    i & 4 ? box.max()[2] : box.min()[2]);
+        const openvdb::Vec3d offset = corner - center;
+        corners[i] = {offset.dot(camera.right()), offset.dot(camera.upward()),
+                      offset.dot(camera.forward())};
+    }
+    return corners;
+}
+
+// What the corners take up along one axis of the picture, on the plane through their center.
+struct Fit {
+    double middle, reach;
+};
+
+// A corner c at forward distance d is seen by an eye at distance D if |c - middle| ≤ t (D + d),
+// t = `tangent`; then reach = t D. For t = 0, orthographic, it is half the width.
+Fit fit(const std::array<openvdb::Vec3d, 8>& corners, int axis, double tangent, bool centered) {
+    double high = -std::numeric_limits<double>::infinity(), low = -high;
+    for (const openvdb::Vec3d& corner : corners) {
+        high = std::max(high, corner[axis] - tangent * corner[2]);
+        low = std::min(low, corner[axis] + tangent * corner[2]);
+    }
+    if (centered) return {0.5 * (high + low), 0.5 * (high - low)};
+    return {0, std::max(high, -low)};
+}
+
+}  // namespace
+
+Camera::Camera(const CameraOptions& options, int width, int height, const openvdb::BBoxd& object)
+    : mProjection(options.projection), mPixelsWide(width), mPixelsHigh(height) {
+    // Refuse what defines no view.
+    const bool perspective = mProjection == CameraOptions::Projection::Perspective;
+    if (!(width > 0 && height > 0)) {
+        refuse("picture's smaller side, in pixels,", std::min(width, height), "at least 1");
+    }
+    if (!(options.focal > 0) || !std::isfinite(options.focal)) {
+        refuse("focal length, mm,", options.focal, "above 0");
+    }
+    if (!(options.aperture > 0) || !std::isfinite(options.aperture)) {
+        refuse("aperture, mm,", options.aperture, "above 0");
+    }
+    if (!(options.frame >= 0) || !std::isfinite(options.frame)) {
+        refuse("frame, world units,", options.frame, "above 0, or 0 to fit");
+    }
+
+    // Turn the axes.
+    const openvdb::Vec3d lookat = options.lookat.value_or(object.getCenter());
+    if (!isFinite(lookat)) requireDirection(lookat, "lookat");
+    const openvdb::Vec3d back =
+        options.eye ? requireDirection(*options.eye - lookat, "eye minus its lookat")
+                    : requireDirection(options.from, "from");
+    mForward = -back;
+    mRight = mForward.cross(requireDirection(options.up, "up"));
+    if (!(mRight.length() > kSmallestSine)) {
+        refuse("angle between up and the view, as a sine,", mRight.length(),
+               "above 0: choose another up");
+    }
+    mRight.normalize();
+    mUpward = mRight.cross(mForward);
+
+    // Frame the object, around the lookat if that was given, else in the middle of the picture.
+    const double aspect = mPixelsHigh / mPixelsWide;
+    const bool centered = !options.eye && !options.lookat;
+    const auto corners = cornersFrom(lookat, *this, object);
+    if (perspective) mHalfWidth = 0.5 * options.aperture / options.focal;
+    const double tangent = perspective ? mHalfWidth / kMargin : 0;
+    const Fit across = fit(corners, 0, tangent, centered);
+    const Fit along = fit(corners, 1, tangent * aspect, centered);
+    double distance = 0;
+    if (perspective) {
+        distance = std::max(across.reach / tangent, along.reach / (tangent * aspect));
+    } else {
+        const double fitted = std::max(across.reach, along.reach / aspect);
+        mHalfWidth = options.frame > 0 ? 0.5 * options.frame : kMargin * fitted;
+        for (const openvdb::Vec3d& corner : corners) {
+            distance = std::max(distance, fitted - corner[2]);
+        }
+    }
+    mHalfHeight = mHalfWidth * aspect;
+    mEye = options.eye.value_or(lookat - distance * mForward + across.middle * mRight +
+                                along.middle * mUpward);
+    if (!(mHalfWidth > 0)) refuse("view's width", 2 * mHalfWidth, "above 0");
+}
+
+Ray Camera::ray(double x, double y) const {
+    const double across = (2 * x / mPixelsWide - 1) * mHalfWidth;
+    const double along = (1 - 2 * y / mPixelsHigh) * mHalfHeight;
+    const openvdb::Vec3d offset = across * mRight + along * mUpward;
+    if (mProjection == CameraOptions::Projection::Orthographic) return {mEye + offset, mForward};
+    return {mEye, (mForward + offset).unit()};
+}
+
+double Camera::depth(const openvdb::Vec3d& point) const {
+    return (point - mEye).dot(mForward);
+}
+
+}  // namespace bandvox

@@ -1,0 +1,108 @@
+#include "render/surface_blocks.h"
+
+#include <bandvox/core/parallel.h>
+
+#include <openvdb/math/DDA.h>
+#include <openvdb/math/Ray.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace bandvox {
+
+namespace {
+
+using Tree = openvdb::FloatTree;
+using Leaf = Tree::LeafNodeType;
+
+constexpr int kBlockLog2 = 3;
+constexpr int kBlockSide = 1 << kBlockLog2;
+
+// The surface may lie this many voxels beyond the outermost high value of the lattice.
+constexpr int kMargin = 2;
+
+// Leaves examined by one task.
+constexpr std::size_t kLeavesPerTask = 256;
+
+struct LeafFindings {
+    openvdb::CoordBBox high;  // voxels at or above the threshold; empty if there are none
+    float maximum;
+};
+
+LeafFindings examine(const Leaf& leaf, float threshold) {
+    LeafFindings found{openvdb::CoordBBox(), leaf.getValue(0)};
+    const float* values = leaf.buffer().data();
+    for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
+        found.maximum = std::max(found.maximum, values[i]);
+        if (values[i] >= threshold) found.high.expand(leaf.offsetToGlobalCoord(i));
+    }
+    return found;
+}
+
+}  // namespace
+
+SurfaceBlocks::SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold)
+    : mMaximum(grid.background()) {
+    // Examine the leaves, then mark in their order.
+    std::vector<const Leaf*> leaves;
+    grid.tree().getNodes(leaves);
+    std::vector<LeafFindings> found(leaves.size());
+    const auto limit = static_cast<float>(threshold);
+    const std::size_t tasks = (leaves.size() + kLeavesPerTask - 1) / kLeavesPerTask;
+    parallelFor(static_cast<std::int64_t>(tasks), [&](std::int64_t task) {
+        const std::size_t begin = static_cast<std::size_t>(task) * kLeavesPerTask;
+        const std::size_t end = std::min(begin + kLeavesPerTask, leaves.size());
+        for (std::size_t i = begin; i < end; ++i) found[i] = examine(*leaves[i], limit);
+    });
+    for (const LeafFindings& leaf : found) {
+        mMaximum = std::max<double>(mMaximum, leaf.maximum);
+        if (!leaf.high.empty()) mark(leaf.high);
+    }
+
+    // Mark the tiles.
+    auto tile = grid.tree().cbeginValueAll();
+    tile.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile) {
+        if (!(tile.getValue() >= limit)) continue;
+        mMaximum = std::max<double>(mMaximum, tile.getValue());
+        mark(tile.getBoundingBox());
+    }
+
+    // Mask trees count whole tiles in; so does the box.
+    openvdb::CoordBBox blocks;
+    mBlocks.evalActiveVoxelBoundingBox(blocks);
+    mBox = openvdb::BBoxd(blocks.min().asVec3d(), blocks.max().offsetBy(1).asVec3d());
+}
+
+void SurfaceBlocks::mark(const openvdb::CoordBBox& voxels) {
+    openvdb::CoordBBox blocks(voxels.min().offsetBy(-kMargin), voxels.max().offsetBy(kMargin));
+    blocks.min() >>= kBlockLog2;
+    blocks.max() >>= kBlockLog2;
+    mBlocks.sparseFill(blocks, true, true);
+}
+
+void SurfaceBlocks::walk(const Ray& ray, const std::function<bool(double, double)>& visit) const {
+    using BlockRay = openvdb::math::Ray<double>;
+    BlockRay blockRay(ray.origin / kBlockSide, ray.direction / kBlockSide, 0.0,
+                      std::numeric_limits<double>::max());
+    if (mBlocks.empty() || !blockRay.clip(mBox)) return;
+
+    // Step over the mask's leaves, and inside each over its blocks.
+    constexpr int kLeafLog2 = openvdb::MaskTree::LeafNodeType::LOG2DIM;
+    openvdb::tree::ValueAccessor<const openvdb::MaskTree, false> accessor(mBlocks);
+    openvdb::math::DDA<BlockRay, kLeafLog2> outer(blockRay);
+    do {
+        if (!accessor.probeConstLeaf(outer.voxel())) {
+            if (accessor.isValueOn(outer.voxel()) && visit(outer.time(), outer.next())) return;
+            continue;
+        }
+        openvdb::math::DDA<BlockRay, 0> inner(blockRay, outer.time(), outer.next());
+        do {
+            if (accessor.isValueOn(inner.voxel()) && visit(inner.time(), inner.next())) return;
+        } while (inner.step());
+    } while (outer.step());
+}
+
+}  // namespace bandvox

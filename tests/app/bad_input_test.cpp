@@ -1,0 +1,195 @@
+// Input, output and sizes that cannot be used: each has its exit status, one line that says why,
+// and leaves nothing behind.
+
+#include "run_command.h"
+#include "sample_files.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+namespace bandvox::app_test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+class BadInput : public testing::Test {
+  protected:
+    /// Expects the status, one line of error that holds all `words`, and no new file.
+    void expectFailure(const Names& arguments, int status, const Names& words,
+                       RunOptions options = {}) {
+        const Names before = mFolder.contents();
+        options.folder = mFolder.path();
+        const RunResult result = runBandvox(arguments, options);
+        SCOPED_TRACE(testing::PrintToString(arguments) + " said: " + result.err);
+        EXPECT_EQ(result.status, status);
+        EXPECT_EQ(result.out, "");
+        EXPECT_EQ(countLines(result.err, "bandvox: error: "), 1);
+        for (const std::string& word : words) {
+            EXPECT_NE(result.err.find(word), std::string::npos) << word;
+        }
+        EXPECT_EQ(mFolder.contents(), before);
+    }
+
+    /// The same for a mesh file of that content under convert.
+    void expectBadMesh(const std::string& name, const std::string& content, int status,
+                       const Names& words = {}) {
+        writeText(mFolder / name, content);
+        Names all = words;
+        if (status == 3) all.push_back(name);
+        expectFailure({"convert", name, "-o", "out.vdb", "-r", "16"}, status, all);
+    }
+
+    TemporaryFolder mFolder;
+};
+
+TEST_F(BadInput, MissingFile) {
+    expectFailure({"convert", "none.obj", "-o", "out.vdb"}, 3, {"none.obj"});
+    expectFailure({"render", "none.vdb", "-o", "out.png"}, 3, {"none.vdb"});
+    expectFailure({"info", "none.vdb"}, 3, {"none.vdb"});
+}
+
+TEST_F(BadInput, Folder) {
+    std::filesystem::create_directory(mFolder / "dir.obj");
+    std::filesystem::create_directory(mFolder / "dir.vdb");
+    expectFailure({"convert", "dir.obj", "-o", "out.vdb"}, 3, {"dir.obj"});
+    expectFailure({"render", "dir.vdb", "-o", "out.png"}, 3, {"dir.vdb"});
+    expectFailure({"info", "dir.vdb"}, 3, {"dir.vdb"});
+}
+
+TEST_F(BadInput, UnknownKind) {
+    writeText(mFolder / "cube.txt", cubeObj());
+    writeText(mFolder / "cube.vdb", "");
+    writeText(mFolder / "cube.obj", cubeObj());
+    writeText(mFolder / "cube", cubeObj());
+    expectFailure({"convert", "cube.txt", "-o", "out.vdb"}, 3, {"'.txt'", ".obj", "shape:"});
+    expectFailure({"convert", "cube", "-o", "out.vdb"}, 3, {"extension", ".obj"});
+    expectFailure({"convert", "cube.vdb", "-o", "out.vdb"}, 3, {"VDB already"});
+    expectFailure({"convert", "shape:blob", "-o", "out.vdb"}, 3, {"blob", "torus"});
+    expectFailure({"convert", "shape:", "-o", "out.vdb"}, 3, {"torus"});
+    expectFailure({"convert", "", "-o", "out.vdb"}, 3, {});
+    expectFailure({"render", "cube.obj", "-o", "out.png"}, 3,
+                  {"bandvox convert cube.obj -o cube.vdb"});
+    expectFailure({"render", "shape:cube", "-o", "out.png"}, 3,
+                  {"bandvox convert shape:cube -o cube.vdb"});
+    expectFailure({"render", "cube.txt", "-o", "out.png"}, 3, {"cube.txt", ".vdb"});
+    expectFailure({"info", "cube.obj"}, 3, {"cube.obj", ".vdb"});
+}
+
+TEST_F(BadInput, EmptyFile) {
+    for (const char* name : {"a.obj", "a.ply", "a.stl", "a.off", "a.gltf", "a.glb", "a.fbx",
+                             "a.dae"}) {
+        expectBadMesh(name, "", 3);
+    }
+    writeText(mFolder / "a.vdb", "");
+    expectFailure({"render", "a.vdb", "-o", "out.png"}, 3, {"a.vdb"});
+    expectFailure({"info", "a.vdb"}, 3, {"a.vdb"});
+}
+
+TEST_F(BadInput, TruncatedMesh) {
+    // An obj may end anywhere between two lines; cut in the points, its faces are missing.
+    expectBadMesh("cut.obj", cubeObj().substr(0, 60), 3);
+    expectBadMesh("cut.ply", cubePly().substr(0, cubePly().size() - 20), 3);
+    expectBadMesh("head.ply", cubePly().substr(0, 60), 3);
+    expectBadMesh("cut.stl", cubeStlBinary().substr(0, 300), 3);
+    expectBadMesh("text.stl", cubeStlAscii().substr(0, cubeStlAscii().size() / 2), 3);
+    expectBadMesh("cut.glb", cubeGlb().substr(0, cubeGlb().size() - 40), 3);
+    expectBadMesh("head.glb", cubeGlb().substr(0, 30), 3);
+}
+
+TEST_F(BadInput, Rubbish) {
+    for (const char* name : {"r.obj", "r.ply", "r.stl", "r.off", "r.gltf", "r.glb", "r.dae"}) {
+        expectBadMesh(name, "\x01\x02 this is no mesh\n\xff\xfe\n", 3);
+    }
+    writeText(mFolder / "r.vdb", "this is no volume");
+    expectFailure({"render", "r.vdb", "-o", "out.png"}, 3, {"r.vdb"});
+    expectFailure({"info", "r.vdb", "--json"}, 3, {"r.vdb"});
+}
+
+TEST_F(BadInput, NoFaces) {
+    expectBadMesh("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", 3);
+}
+
+TEST_F(BadInput, CoordinatesThatAreNotFinite) {
+    std::string text = cubeObj();
+    text.replace(text.find("v -1 -1 -1"), 10, "v -1 nan -1");
+    expectBadMesh("nan.obj", text, 3);
+    std::string bytes = cubeStlBinary();
+    const unsigned char infinity[4]{0, 0, 0x80, 0x7f};
+    bytes.replace(80 + 4 + 12, 4, reinterpret_cast<const char*>(infinity), 4);
+    expectBadMesh("inf.stl", bytes, 3);
+}
+
+TEST_F(BadInput, IndicesOutOfRange) {
+    expectBadMesh("index.obj", cubeObj() + "f 1 2 99\n", 3);
+    std::string ply = cubePly();
+    ply.replace(ply.rfind("3 "), 3, "3 9");
+    expectBadMesh("index.ply", ply, 3);
+}
+
+TEST_F(BadInput, FlatMesh) {
+    expectBadMesh("flat.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n", 4);
+}
+
+TEST_F(BadInput, MoreMemoryThanThereIs) {
+    writeText(mFolder / "cube.obj", cubeObj());
+    expectFailure({"convert", "cube.obj", "-o", "out.vdb", "--voxel-size", "1e-7"}, 5, {"memory"});
+    expectFailure({"convert", "cube.obj", "-o", "out.vdb", "--voxel-size", "1e-300"}, 5,
+                  {"memory"});
+    expectFailure({"convert", "shape:sphere", "-o", "out.vdb", "-r", "1000000"}, 5, {"memory"});
+}
+
+TEST_F(BadInput, OutputThatCannotBeWritten) {
+    writeText(mFolder / "cube.obj", cubeObj());
+    writeText(mFolder / "file", "");
+    std::filesystem::create_directory(mFolder / "dir.vdb");
+    for (const std::string output : {"none/out.vdb", "file/out.vdb", "dir.vdb", "/proc/out.vdb"}) {
+        // Known before the work: not a word about the mesh.
+        const RunResult result = runBandvox({"convert", "cube.obj", "-o", output},
+                                            {.folder = mFolder.path()});
+        EXPECT_EQ(result.err.find("triangles"), std::string::npos) << result.err;
+        expectFailure({"convert", "cube.obj", "-o", output}, 1, {output});
+    }
+    expectFailure({"convert", "cube.obj", "-o", "out.vdb", "--stats", "none/s.json"}, 1,
+                  {"none/s.json"});
+}
+
+TEST_F(BadInput, ReadOnlyFolder) {
+    const auto folder = mFolder / "locked";
+    std::filesystem::create_directory(folder);
+    std::filesystem::permissions(folder, std::filesystem::perms::owner_read |
+                                             std::filesystem::perms::owner_exec);
+    if (access(folder.c_str(), W_OK) == 0) GTEST_SKIP() << "this user may write everywhere";
+    expectFailure({"convert", "shape:cube", "-o", "locked/out.vdb"}, 1, {"locked/out.vdb"});
+}
+
+TEST_F(BadInput, FullDisk) {
+    // A limit on the size of files fails in the same way, and needs no disk of its own.
+    const RunOptions full{.largestFile = 2000};
+    expectFailure({"convert", "shape:torus", "-o", "out.vdb", "-r", "64"}, 1, {"out.vdb"}, full);
+    ASSERT_EQ(runBandvox({"convert", "shape:torus", "-o", "t.vdb", "-r", "24"},
+                         {.folder = mFolder.path()})
+                  .status,
+              0);
+    expectFailure({"render", "t.vdb", "-o", "out.png", "--res", "200x200"}, 1, {"out.png"}, full);
+    expectFailure({"render", "t.vdb", "-o", "out.exr", "--res", "200x200"}, 1, {"out.exr"}, full);
+}
+
+TEST_F(BadInput, DamagedVdb) {
+    writeSeveralGrids(mFolder / "good.vdb");
+    const std::string good = readText(mFolder / "good.vdb");
+    writeText(mFolder / "cut.vdb", good.substr(0, good.size() / 2));
+    expectFailure({"info", "cut.vdb"}, 3, {"cut.vdb"});
+    expectFailure({"render", "cut.vdb", "-o", "out.png"}, 3, {"cut.vdb"});
+}
+
+TEST_F(BadInput, GridThatIsNotThere) {
+    writeSeveralGrids(mFolder / "several.vdb");
+    expectFailure({"render", "several.vdb", "-o", "out.png", "--grid", "nose"}, 3,
+                  {"'nose'", "'heat'", "'density'"});
+    expectFailure({"render", "several.vdb", "-o", "out.png", "--grid", "vel"}, 3,
+                  {"'vel'", "float"});
+}
+
+}  // namespace
+}  // namespace bandvox::app_test

@@ -1,0 +1,238 @@
+// What the convert command writes and reports.
+
+#include "run_command.h"
+#include "sample_files.h"
+
+#include <bandvox/grid/density_grid.h>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <openvdb/openvdb.h>
+
+namespace bandvox::app_test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+RunResult convertIn(const TemporaryFolder& folder, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "convert");
+    return runBandvox(arguments, {.folder = folder.path()});
+}
+
+openvdb::FloatGrid::Ptr readDensity(const std::filesystem::path& path) {
+    openvdb::initialize();
+    const openvdb::GridPtrVec grids = readVdb(path);
+    EXPECT_EQ(grids.size(), 1u);
+    return openvdb::gridPtrCast<openvdb::FloatGrid>(grids.at(0));
+}
+
+TEST(Convert, TurnsAMeshIntoADensity) {
+    const TemporaryFolder folder;
+    writeText(folder / "cube.obj", cubeObj());
+    const RunResult result = convertIn(folder, {"cube.obj", "-o", "cube.vdb", "-r", "32"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(folder.contents(), (Names{"cube.obj", "cube.vdb"}));
+    for (const char* word : {"8 points", "12 triangles", "active voxels", "closure", "volume"}) {
+        EXPECT_NE(result.err.find(word), std::string::npos) << word << " in " << result.err;
+    }
+    EXPECT_EQ(result.err.find('\r'), std::string::npos) << "progress without a terminal";
+
+    const auto grid = readDensity(folder / "cube.vdb");
+    ASSERT_TRUE(grid);
+    EXPECT_EQ(grid->getName(), "density");
+    EXPECT_EQ(grid->getGridClass(), openvdb::GRID_FOG_VOLUME);
+    EXPECT_DOUBLE_EQ(grid->voxelSize().x(), 2.0 / 32);
+    EXPECT_NEAR(densityIntegral(*grid), 8, 8e-4);
+    const auto metadata = densityMetadata(*grid);
+    ASSERT_TRUE(metadata);
+    EXPECT_EQ(metadata->source, "cube.obj");
+    EXPECT_EQ(metadata->holesCapped, 0);
+    EXPECT_NEAR(metadata->sourceVolume, 8, 1e-6);
+    EXPECT_LE(metadata->closureError, metadata->tolerance);
+}
+
+TEST(Convert, ReadsEveryKindOfMeshAlike) {
+    const TemporaryFolder folder;
+    writeText(folder / "cube.obj", cubeObj());
+    writeText(folder / "cube.ply", cubePly());
+    writeText(folder / "text.stl", cubeStlAscii());
+    writeText(folder / "binary.STL", cubeStlBinary());
+    writeText(folder / "cube.glb", cubeGlb());
+    for (const char* name : {"cube.obj", "cube.ply", "text.stl", "binary.STL", "cube.glb"}) {
+        const RunResult result = convertIn(folder, {name, "-o", "out.vdb", "-r", "16"});
+        ASSERT_EQ(result.status, 0) << name << ": " << result.err;
+        EXPECT_NEAR(densityIntegral(*readDensity(folder / "out.vdb")), 8, 8e-4) << name;
+    }
+}
+
+TEST(Convert, CapsHolesAndSaysSo) {
+    const TemporaryFolder folder;
+    writeText(folder / "open.obj", openCubeObj());
+    const RunResult result = convertIn(folder, {"open.obj", "-o", "open.vdb", "-r", "16"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.err.find("1 hole"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("4 edges, perimeter 8"), std::string::npos) << result.err;
+    const auto metadata = densityMetadata(*readDensity(folder / "open.vdb"));
+    ASSERT_TRUE(metadata);
+    EXPECT_EQ(metadata->holesCapped, 1);
+    EXPECT_NEAR(metadata->gridVolume, 8, 8e-4);
+}
+
+TEST(Convert, TakesVoxelSizeFilterAndStorageOptions) {
+    const TemporaryFolder folder;
+    const RunResult result = convertIn(
+        folder, {"shape:sphere", "-o", "s.vdb", "--voxel-size", "0.1", "--order", "4", "--cutoff",
+                 "0.25", "--clamp", "--half", "--compression", "zip", "--iso", "0.4"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const auto grid = readDensity(folder / "s.vdb");
+    ASSERT_TRUE(grid);
+    EXPECT_DOUBLE_EQ(grid->voxelSize().x(), 0.1);
+    EXPECT_TRUE(grid->saveFloatAsHalf());
+    const auto metadata = densityMetadata(*grid);
+    ASSERT_TRUE(metadata);
+    EXPECT_EQ(metadata->source, "shape:sphere");
+    EXPECT_EQ(metadata->order, 4);
+    EXPECT_EQ(metadata->cutoff, 0.25);
+    EXPECT_EQ(metadata->iso, 0.4);
+    EXPECT_TRUE(metadata->clamped);
+    for (auto value = grid->cbeginValueOn(); value; ++value) {
+        ASSERT_GE(*value, 0.0f);
+        ASSERT_LE(*value, 1.0f);
+    }
+}
+
+TEST(Convert, WritesTheSameBytesForAnyNumberOfThreads) {
+    const TemporaryFolder folder;
+    Names bytes;
+    for (const char* threads : {"1", "2", "0"}) {
+        const RunResult result = convertIn(
+            folder, {"shape:torus", "-o", "t.vdb", "-r", "40", "--threads", threads});
+        ASSERT_EQ(result.status, 0) << result.err;
+        const auto grid = readDensity(folder / "t.vdb");
+        std::string values;
+        for (auto value = grid->cbeginValueOn(); value; ++value) {
+            const float v = *value;
+            values.append(reinterpret_cast<const char*>(&v), sizeof v);
+        }
+        bytes.push_back(values);
+    }
+    EXPECT_FALSE(bytes[0].empty());
+    EXPECT_TRUE(bytes[0] == bytes[1]);
+    EXPECT_TRUE(bytes[0] == bytes[2]);
+}
+
+TEST(Convert, ReplacesAnOlderOutput) {
+    const TemporaryFolder folder;
+    writeText(folder / "cube.vdb", "something older");
+    ASSERT_EQ(convertIn(folder, {"shape:cube", "-o", "cube.vdb", "-r", "16"}).status, 0);
+    EXPECT_TRUE(readDensity(folder / "cube.vdb"));
+    EXPECT_EQ(folder.contents(), Names{"cube.vdb"});
+}
+
+TEST(Convert, QuietSaysNothing) {
+    const TemporaryFolder folder;
+    const RunResult result =
+        convertIn(folder, {"shape:cube", "-o", "cube.vdb", "-r", "16", "--quiet"});
+    EXPECT_EQ(result.status, 0);
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(result.err, "");
+}
+
+TEST(Convert, VerboseSaysMore) {
+    const TemporaryFolder folder;
+    const Names arguments{"shape:cube", "-o", "cube.vdb", "-r", "16"};
+    Names verbose = arguments;
+    verbose.emplace_back("--verbose");
+    const int plainLines = countLines(convertIn(folder, arguments).err, "");
+    EXPECT_GT(countLines(convertIn(folder, verbose).err, ""), plainLines);
+}
+
+TEST(Convert, ShowsProgressWhenAsked) {
+    const TemporaryFolder folder;
+    const RunResult result = convertIn(
+        folder, {"shape:cube", "-o", "cube.vdb", "-r", "16", "--progress", "always"});
+    EXPECT_EQ(result.status, 0);
+    EXPECT_NE(result.err.find('\r'), std::string::npos);
+    // The line is taken away before anything else is said.
+    EXPECT_NE(result.err.find("\r\033[Kwrote"), std::string::npos) << result.err;
+}
+
+TEST(Convert, WritesStatistics) {
+    const TemporaryFolder folder;
+    writeText(folder / "open.obj", openCubeObj());
+    const RunResult result = convertIn(
+        folder, {"open.obj", "-o", "a.vdb", "-r", "16", "--stats", "s.json", "--threads", "1"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(folder.contents(), (Names{"a.vdb", "open.obj", "s.json"}));
+    const auto statistics = nlohmann::json::parse(readText(folder / "s.json"));
+    EXPECT_EQ(statistics.at("command"), "convert");
+    EXPECT_EQ(statistics.at("threads"), 1);
+    EXPECT_GT(statistics.at("seconds").get<double>(), 0);
+    EXPECT_GT(statistics.at("peak_memory_bytes").get<double>(), 1e6);
+    EXPECT_GE(statistics.at("stages").size(), 2u);
+    double stages = 0;
+    for (const auto& stage : statistics.at("stages")) {
+        EXPECT_FALSE(stage.at("name").get<std::string>().empty());
+        stages += stage.at("seconds").get<double>();
+    }
+    EXPECT_LE(stages, statistics.at("seconds").get<double>());
+    const auto& counts = statistics.at("counts");
+    EXPECT_EQ(counts.at("triangles"), 10);
+    EXPECT_EQ(counts.at("holes_capped"), 1);
+    EXPECT_GT(counts.at("active_voxels").get<int>(), 16 * 16 * 16);
+    EXPECT_EQ(counts.at("output_bytes").get<std::size_t>(),
+              std::filesystem::file_size(folder / "a.vdb"));
+}
+
+TEST(Convert, StrictTakesAWarningForAFailure) {
+    const TemporaryFolder folder;
+    // At this cutoff the lattice cannot hold what the filter lets through.
+    const Names arguments{"shape:cube", "-o", "a.vdb", "-r", "16", "--cutoff", "0.3"};
+    const RunResult plain = convertIn(folder, arguments);
+    EXPECT_EQ(plain.status, 0) << plain.err;
+    EXPECT_EQ(countLines(plain.err, "bandvox: warning: "), 1) << plain.err;
+    EXPECT_EQ(folder.contents(), Names{"a.vdb"});
+    std::filesystem::remove(folder / "a.vdb");
+
+    Names strict = arguments;
+    strict.insert(strict.end(), {"--strict", "--stats", "s.json"});
+    const RunResult result = convertIn(folder, strict);
+    EXPECT_EQ(result.status, 4) << result.err;
+    EXPECT_EQ(countLines(result.err, "bandvox: warning: "), 1) << result.err;
+    EXPECT_EQ(countLines(result.err, "bandvox: error: "), 1) << result.err;
+    EXPECT_EQ(folder.contents(), Names{});
+}
+
+TEST(Convert, OutputOpensInVdbPrint) {
+    if (!hasProgram("vdb_print")) GTEST_SKIP() << "vdb_print is not installed";
+    const TemporaryFolder folder;
+    ASSERT_EQ(convertIn(folder, {"shape:cube", "-o", "cube.vdb", "-r", "16"}).status, 0);
+    const RunResult result = runProgram({"vdb_print", "-l", "cube.vdb"}, {.folder = folder.path()});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("density"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("bandvox_cutoff"), std::string::npos) << result.out;
+}
+
+TEST(Convert, OutputOpensInPython) {
+    const Names python{"/usr/bin/python3", "-c"};
+    const auto runPython = [&](const std::string& code, const std::filesystem::path& folder) {
+        return runProgram({python[0], python[1], code}, {.folder = folder});
+    };
+    if (runPython("import pyopenvdb", "/").status != 0) {
+        GTEST_SKIP() << "Python's pyopenvdb is not installed";
+    }
+    const TemporaryFolder folder;
+    ASSERT_EQ(convertIn(folder, {"shape:cube", "-o", "cube.vdb", "-r", "16"}).status, 0);
+    const RunResult result = runPython(
+        "import pyopenvdb as v\n"
+        "g = v.read('cube.vdb', 'density')\n"
+        "assert g.gridClass == 'fog volume', g.gridClass\n"
+        "assert abs(g.getConstAccessor().getValue((0, 0, 0)) - 1) < 1e-3\n"
+        "assert abs(g['bandvox_source_volume'] - 8) < 1e-6\n",
+        folder.path());
+    EXPECT_EQ(result.status, 0) << result.err;
+}
+
+}  // namespace
+}  // namespace bandvox::app_test

@@ -1,0 +1,118 @@
+// What the info command tells of grids of any type.
+
+#include "run_command.h"
+#include "sample_files.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace bandvox::app_test {
+namespace {
+
+using Json = nlohmann::json;
+
+TEST(Info, TellsOfADensityAsJson) {
+    const TemporaryFolder folder;
+    const RunOptions here{.folder = folder.path()};
+    ASSERT_EQ(runBandvox({"convert", "shape:cube", "-o", "cube.vdb", "-r", "20"}, here).status, 0);
+    const RunResult result = runBandvox({"info", "cube.vdb", "--json"}, here);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    const Json report = Json::parse(result.out);
+    EXPECT_EQ(report.at("file"), "cube.vdb");
+    EXPECT_EQ(report.at("file_bytes"), std::filesystem::file_size(folder / "cube.vdb"));
+    ASSERT_EQ(report.at("grids").size(), 1u);
+    const Json& grid = report.at("grids").at(0);
+    EXPECT_EQ(grid.at("name"), "density");
+    EXPECT_EQ(grid.at("class"), "fog volume");
+    EXPECT_EQ(grid.at("value_type"), "float");
+    EXPECT_EQ(grid.at("voxel_size"), (Json{0.1, 0.1, 0.1}));
+    EXPECT_GT(grid.at("active_voxels").get<int>(), 20 * 20 * 20);
+    EXPECT_GT(grid.at("memory_bytes").get<int>(), 20 * 20 * 20);
+    EXPECT_LE(grid.at("world_bounds").at("min").at(0).get<double>(), -1);
+    EXPECT_GE(grid.at("world_bounds").at("max").at(2).get<double>(), 1);
+    const Json& own = grid.at("bandvox");
+    EXPECT_EQ(own.at("source"), "shape:cube");
+    EXPECT_EQ(own.at("route"), "exact");
+    EXPECT_NEAR(own.at("source_volume").get<double>(), 8, 1e-6);
+    EXPECT_EQ(own.at("holes_capped"), 0);
+}
+
+TEST(Info, TellsOfADensityInWords) {
+    const TemporaryFolder folder;
+    const RunOptions here{.folder = folder.path()};
+    ASSERT_EQ(runBandvox({"convert", "shape:cube", "-o", "cube.vdb", "-r", "20"}, here).status, 0);
+    const RunResult result = runBandvox({"info", "cube.vdb"}, here);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    for (const char* words : {"1 grid", "grid 'density'", "fog volume", "(0.1, 0.1, 0.1)",
+                              "source: shape:cube", "closure_error: "}) {
+        EXPECT_NE(result.out.find(words), std::string::npos) << words << " in " << result.out;
+    }
+}
+
+TEST(Info, TakesGridsOfAnyType) {
+    const TemporaryFolder folder;
+    writeSeveralGrids(folder / "several.vdb");
+    const RunOptions here{.folder = folder.path()};
+    const RunResult result = runBandvox({"info", "several.vdb", "--json"}, here);
+    ASSERT_EQ(result.status, 0) << result.err;
+    const Json grids = Json::parse(result.out).at("grids");
+    ASSERT_EQ(grids.size(), 4u);
+    const auto named = [&](const std::string& name) {
+        for (const Json& grid : grids) {
+            if (grid.at("name") == name) return grid;
+        }
+        return Json();
+    };
+    EXPECT_EQ(named("heat").at("index_bounds").at("min"), (Json{1, 2, 3}));
+    // The voxel is a cube of side 0.5 around its centre.
+    EXPECT_EQ(named("heat").at("world_bounds").at("min"), (Json{0.25, 0.75, 1.25}));
+    EXPECT_EQ(named("heat").at("world_bounds").at("max"), (Json{0.75, 1.25, 1.75}));
+    EXPECT_FALSE(named("heat").contains("bandvox"));
+    EXPECT_EQ(named("vel").at("value_type"), "vec3s");
+    // Bytes that are no UTF-8 cannot stand in JSON.
+    EXPECT_EQ(named("vel").at("metadata").at("note"), "two\nlines, and a byte: \xEF\xBF\xBD");
+    EXPECT_EQ(named("mask").at("active_voxels"), 0);
+    EXPECT_TRUE(named("mask").at("index_bounds").is_null());
+
+    const RunResult words = runBandvox({"info", "several.vdb"}, here);
+    EXPECT_EQ(words.status, 0);
+    EXPECT_EQ(countLines(words.out, "grid '"), 4);
+    EXPECT_NE(words.out.find("empty"), std::string::npos);
+}
+
+TEST(Info, ReaderThatGoesAwayIsNoFailure) {
+    const TemporaryFolder folder;
+    writeSeveralGrids(folder / "several.vdb");
+    const RunResult result =
+        runBandvox({"info", "several.vdb"},
+                   {.folder = folder.path(), .standardOutputClosed = true});
+    EXPECT_EQ(result.status, 0);
+    EXPECT_EQ(result.err, "");
+}
+
+TEST(Info, FullStandardOutputIsAFailure) {
+    const TemporaryFolder folder;
+    writeSeveralGrids(folder / "several.vdb");
+    const RunResult result =
+        runBandvox({"info", "several.vdb"},
+                   {.folder = folder.path(), .standardOutput = "/dev/full"});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(countLines(result.err, "bandvox: error: "), 1) << result.err;
+    EXPECT_NE(result.err.find("standard output"), std::string::npos) << result.err;
+}
+
+TEST(Info, WritesStatistics) {
+    const TemporaryFolder folder;
+    writeSeveralGrids(folder / "several.vdb");
+    const RunResult result = runBandvox({"info", "several.vdb", "--stats", "s.json"},
+                                        {.folder = folder.path()});
+    EXPECT_EQ(result.status, 0) << result.err;
+    const Json statistics = Json::parse(readText(folder / "s.json"));
+    EXPECT_EQ(statistics.at("command"), "info");
+    EXPECT_EQ(statistics.at("counts").at("grids"), 4);
+}
+
+}  // namespace
+}  // namespace bandvox::app_test

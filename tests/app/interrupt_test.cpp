@@ -1,0 +1,79 @@
+// Asking the command to stop in the middle of its work.
+
+#include "run_command.h"
+
+#include <gtest/gtest.h>
+
+namespace bandvox::app_test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// Sends `signal` once the first stage shows on the progress line.
+RunOptions interruptIn(const TemporaryFolder& folder, int signal) {
+    RunOptions options{.folder = folder.path()};
+    options.signalWhen = [signal](const std::string& said) {
+        return said.find('\r') != std::string::npos ? signal : 0;
+    };
+    return options;
+}
+
+/// Work of several seconds on one thread.
+const Names kLongConvert{"convert", "shape:tree", "-o", "out.vdb", "--resolution", "1200",
+                         "--threads", "1", "--progress", "always", "--stats", "s.json"};
+
+TEST(Interrupt, ConvertLeavesNothing) {
+    for (const auto& [signal, status] :
+         {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}, std::pair{SIGHUP, 129}}) {
+        const TemporaryFolder folder;
+        const RunResult result = runBandvox(kLongConvert, interruptIn(folder, signal));
+        EXPECT_TRUE(result.signalSent);
+        EXPECT_EQ(result.status, status) << result.err;
+        EXPECT_EQ(countLines(result.err, "bandvox: error: interrupted") +
+                      static_cast<int>(result.err.find("\033[Kbandvox: error: interrupted") !=
+                                       std::string::npos),
+                  1)
+            << result.err;
+        EXPECT_EQ(folder.contents(), Names{});
+    }
+}
+
+TEST(Interrupt, ConvertKeepsAnOlderOutput) {
+    const TemporaryFolder folder;
+    writeText(folder / "out.vdb", "older");
+    const RunResult result = runBandvox(kLongConvert, interruptIn(folder, SIGINT));
+    EXPECT_EQ(result.status, 130) << result.err;
+    EXPECT_EQ(folder.contents(), Names{"out.vdb"});
+    EXPECT_EQ(readText(folder / "out.vdb"), "older");
+}
+
+TEST(Interrupt, RenderLeavesNothing) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(runBandvox({"convert", "shape:torus", "-o", "t.vdb", "-r", "64"},
+                         {.folder = folder.path()})
+                  .status,
+              0);
+    const RunResult result =
+        runBandvox({"render", "t.vdb", "-o", "t.png", "--res", "4000x4000", "--samples", "4",
+                    "--threads", "1", "--progress", "always"},
+                   interruptIn(folder, SIGINT));
+    EXPECT_TRUE(result.signalSent);
+    EXPECT_EQ(result.status, 130) << result.err;
+    EXPECT_EQ(folder.contents(), Names{"t.vdb"});
+}
+
+TEST(Interrupt, IgnoredSignalStaysIgnored) {
+    // As nohup starts it.
+    const TemporaryFolder folder;
+    const RunResult result = runProgram(
+        {"/bin/sh", "-c",
+         "trap '' HUP; exec \"$0\" convert shape:torus -o t.vdb -r 128 --progress always",
+         BANDVOX_EXECUTABLE},
+        interruptIn(folder, SIGHUP));
+    EXPECT_TRUE(result.signalSent);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(folder.contents(), Names{"t.vdb"});
+}
+
+}  // namespace
+}  // namespace bandvox::app_test

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace bandvox::app_test {
+
+/// A cube [-1, 1]³ as an obj: 8 points, 6 quadrilaterals, outward.
+std::string cubeObj();
+/// The same without the face at z = 1: one hole of four edges.
+std::string openCubeObj();
+/// The same cube, triangles only, as text of other formats.
+std::string cubePly();
+std::string cubeStlAscii();
+std::string cubeStlBinary();
+/// The same as a glTF binary.
+std::string cubeGlb();
+
+/// Writes a .vdb with a float grid "density", a float grid "heat", a vector grid "vel" with one
+/// voxel each, and an empty bool grid "mask".
+void writeSeveralGrids(const std::filesystem::path& path);
+
+}  // namespace bandvox::app_test
