@@ -13,6 +13,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kOwnPrefix = "bandvox_";
 
+/// True for metadata that say again what the report says under another key.
+bool isReportedElsewhere(const std::string& name) {
+    using openvdb::GridBase;
+    return name == GridBase::META_GRID_NAME || name == GridBase::META_GRID_CLASS ||
+           name == GridBase::META_SAVE_HALF_FLOAT;
+}
+
 Json toJson(const openvdb::Vec3d& vector) {
     return Json::array({vector.x(), vector.y(), vector.z()});
 }
@@ -122,7 +129,7 @@ nlohmann::ordered_json gridReport(const openvdb::GridBase& grid) {
             report["compression"] = toJson(*entry->second);
         } else if (name.starts_with(kOwnPrefix)) {
             own[name.substr(kOwnPrefix.size())] = toJson(*entry->second);
-        } else {
+        } else if (!isReportedElsewhere(name)) {
             others[name] = toJson(*entry->second);
         }
     }

@@ -106,8 +106,8 @@ TEST(Convert, WritesTheSameBytesForAnyNumberOfThreads) {
     const TemporaryFolder folder;
     Names bytes;
     for (const char* threads : {"1", "2", "0"}) {
-        const RunResult result = convertIn(
-            folder, {"shape:torus", "-o", "t.vdb", "-r", "40", "--threads", threads});
+        const RunResult result =
+            convertIn(folder, {"shape:torus", "-o", "t.vdb", "-r", "40", "--threads", threads});
         ASSERT_EQ(result.status, 0) << result.err;
         const auto grid = readDensity(folder / "t.vdb");
         std::string values;
@@ -150,8 +150,8 @@ TEST(Convert, VerboseSaysMore) {
 
 TEST(Convert, ShowsProgressWhenAsked) {
     const TemporaryFolder folder;
-    const RunResult result = convertIn(
-        folder, {"shape:cube", "-o", "cube.vdb", "-r", "16", "--progress", "always"});
+    const RunResult result =
+        convertIn(folder, {"shape:cube", "-o", "cube.vdb", "-r", "16", "--progress", "always"});
     EXPECT_EQ(result.status, 0);
     EXPECT_NE(result.err.find('\r'), std::string::npos);
     // The line is taken away before anything else is said.
