@@ -35,8 +35,7 @@ class BrickProbe final : public DensityProbe {
     DensityAt evaluate(const openvdb::Vec3d& index) override {
         openvdb::Vec3d local;
         const CoefficientBrick* brick = find(index, local);
-        return brick ? brick->evaluate(mCache.kernel(), local)
-                     : DensityAt{mBackground, {0, 0, 0}};
+        return brick ? brick->evaluate(mCache.kernel(), local) : DensityAt{mBackground, {0, 0, 0}};
     }
 
   private:
@@ -46,8 +45,8 @@ class BrickProbe final : public DensityProbe {
             if (!(std::abs(index[axis]) < kFarthest)) return nullptr;
             place[axis] = static_cast<int>(std::floor(index[axis] / CoefficientBrick::kSide));
             // A place a hair below 0 would round up to the end of its brick.
-            local[axis] = std::min(index[axis] - double(place[axis]) * CoefficientBrick::kSide,
-                                   kLastPlace);
+            local[axis] =
+                std::min(index[axis] - double(place[axis]) * CoefficientBrick::kSide, kLastPlace);
         }
         // One slot for each parity of a place, so that the eight bricks around a corner all stay.
         Last& last = mLast[(place[0] & 1) * 4 + (place[1] & 1) * 2 + (place[2] & 1)];
@@ -96,8 +95,8 @@ class BrickReconstruction final : public Reconstruction {
 
 }  // namespace
 
-std::unique_ptr<Reconstruction> makeBrickReconstruction(
-    openvdb::FloatGrid::ConstPtr grid, const BrickReconstructionOptions& options) {
+std::unique_ptr<Reconstruction> makeBrickReconstruction(openvdb::FloatGrid::ConstPtr grid,
+                                                        const BrickReconstructionOptions& options) {
     if (!grid) throw Error(ErrorKind::Usage, "a reconstruction needs a grid, but got none");
     if (!(options.tolerance >= 1e-6 && options.tolerance <= 0.1)) {
         throw Error(ErrorKind::Usage, "the tolerance of a reconstruction is " +

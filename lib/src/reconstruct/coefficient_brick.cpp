@@ -12,14 +12,18 @@ namespace {
 using Leaf = openvdb::FloatTree::LeafNodeType;
 constexpr int kLeafSide = Leaf::DIM;
 
-int nodesAlong(const SpreadingKernel& kernel) { return CoefficientBrick::kSide + kernel.width(); }
+int nodesAlong(const SpreadingKernel& kernel) {
+    return CoefficientBrick::kSide + kernel.width();
+}
 
 int pitchOf(const SpreadingKernel& kernel) {
     return CoefficientBrick::kSide + kernel.paddedWidth();
 }
 
 // The first node under the kernel at the brick's first voxel.
-int firstNode(const SpreadingKernel& kernel) { return -(kernel.width() / 2); }
+int firstNode(const SpreadingKernel& kernel) {
+    return -(kernel.width() / 2);
+}
 
 struct ValueRange {
     float low, high;
@@ -48,9 +52,9 @@ ValueRange copyLattice(const openvdb::FloatGrid& grid, const openvdb::Coord& ori
                     for (int y = part.min()[1]; y <= part.max()[1]; ++y) {
                         const openvdb::Coord start(x, y, part.min()[2]);
                         const openvdb::Coord at = start - origin;
-                        float* row = &lattice[(static_cast<std::size_t>(at[0]) * side + at[1]) *
-                                                  side +
-                                              at[2]];
+                        float* row =
+                            &lattice[(static_cast<std::size_t>(at[0]) * side + at[1]) * side +
+                                     at[2]];
                         if (!values) {
                             std::fill_n(row, length, tile);
                             continue;
@@ -183,8 +187,8 @@ CoefficientBrick::CoefficientBrick(const openvdb::FloatGrid& grid, const openvdb
     const int reach = design.reach();
     const int side = mNodes + 2 * reach;
     const openvdb::Coord origin(brick[0] * kSide, brick[1] * kSide, brick[2] * kSide);
-    const ValueRange range = copyLattice(
-        grid, origin.offsetBy(firstNode(design.kernel) - reach), side, scratch.lattice);
+    const ValueRange range =
+        copyLattice(grid, origin.offsetBy(firstNode(design.kernel) - reach), side, scratch.lattice);
     if (range.low == range.high) {
         mConstant = range.low;
         return;

@@ -35,7 +35,9 @@ struct KernelResponse {
     double constantGradient = 0;        // Σ_{m≠0} 2π |m| |ψ̂(m)|
 };
 
-double frequency(int i) { return (i + 0.5) * kFrequencyStep; }
+double frequency(int i) {
+    return (i + 0.5) * kFrequencyStep;
+}
 
 KernelResponse kernelResponse(const SpreadingKernel& kernel) {
     KernelResponse response;
@@ -203,19 +205,17 @@ InterpolationDesign designInterpolation(const ExponentialFilter& filter, double 
         const PrefilterFit fit(filter, choice.response, noise);
         for (int reach = kShortestPrefilter; reach <= kLongestPrefilter; ++reach) {
             std::vector<double> prefilter = fit.prefilter(reach);
-            const InterpolationError error =
-                interpolationError(filter, choice.response, prefilter);
+            const InterpolationError error = interpolationError(filter, choice.response, prefilter);
             if (error.worst() <= tolerance) {
                 return {choice.kernel, std::move(prefilter), error.value, error.gradient};
             }
         }
     }
     throw Error(ErrorKind::Usage,
-                "no interpolation of the lattice reaches an error of " +
-                    std::to_string(tolerance) + " (best: " + std::to_string(reached) +
-                    "): a filter of order " + std::to_string(filter.order) + " and cutoff " +
-                    std::to_string(filter.cutoff) + " leaves " +
-                    std::to_string(filter.atNyquist()) + " at Nyquist");
+                "no interpolation of the lattice reaches an error of " + std::to_string(tolerance) +
+                    " (best: " + std::to_string(reached) + "): a filter of order " +
+                    std::to_string(filter.order) + " and cutoff " + std::to_string(filter.cutoff) +
+                    " leaves " + std::to_string(filter.atNyquist()) + " at Nyquist");
 }
 
 }  // namespace bandvox

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace bandvox {
@@ -51,6 +52,23 @@ std::array<openvdb::Vec3d, 8> cornersFrom(const openvdb::Vec3d& center, const Ca
     return corners;
 }
 
+// What the corners take up along one axis of the picture, on the plane through their center.
+struct Fit {
+    double middle, reach;
+};
+
+// A corner c at forward distance d is seen by an eye at distance D if |c - middle| ≤ t (D + d),
+// t = `tangent`; then reach = t D. For t = 0, orthographic, it is half the width.
+Fit fit(const std::array<openvdb::Vec3d, 8>& corners, int axis, double tangent, bool centered) {
+    double high = -std::numeric_limits<double>::infinity(), low = -high;
+    for (const openvdb::Vec3d& corner : corners) {
+        high = std::max(high, corner[axis] - tangent * corner[2]);
+        low = std::min(low, corner[axis] + tangent * corner[2]);
+    }
+    if (centered) return {0.5 * (high + low), 0.5 * (high - low)};
+    return {0, std::max(high, -low)};
+}
+
 }  // namespace
 
 Camera::Camera(const CameraOptions& options, int width, int height, const openvdb::BBoxd& object)
@@ -73,9 +91,9 @@ Camera::Camera(const CameraOptions& options, int width, int height, const openvd
     // Turn the axes.
     const openvdb::Vec3d lookat = options.lookat.value_or(object.getCenter());
     if (!isFinite(lookat)) requireDirection(lookat, "lookat");
-    const openvdb::Vec3d back = options.eye ? requireDirection(*options.eye - lookat,
-                                                               "eye minus its lookat")
-                                            : requireDirection(options.from, "from");
+    const openvdb::Vec3d back =
+        options.eye ? requireDirection(*options.eye - lookat, "eye minus its lookat")
+                    : requireDirection(options.from, "from");
     mForward = -back;
     mRight = mForward.cross(requireDirection(options.up, "up"));
     if (!(mRight.length() > kSmallestSine)) {
@@ -85,28 +103,27 @@ Camera::Camera(const CameraOptions& options, int width, int height, const openvd
     mRight.normalize();
     mUpward = mRight.cross(mForward);
 
-    // Frame the object: each corner must lie within the view, and in front of the eye.
+    // Frame the object, around the lookat if that was given, else in the middle of the picture.
     const double aspect = mPixelsHigh / mPixelsWide;
+    const bool centered = !options.eye && !options.lookat;
     const auto corners = cornersFrom(lookat, *this, object);
-    double fitted = 0, nearest = 0;  // half the view's width; towards the eye
-    for (const openvdb::Vec3d& corner : corners) {
-        fitted = std::max({fitted, std::abs(corner[0]), std::abs(corner[1]) / aspect});
-        nearest = std::max(nearest, -corner[2]);
-    }
+    if (perspective) mHalfWidth = 0.5 * options.aperture / options.focal;
+    const double tangent = perspective ? mHalfWidth / kMargin : 0;
+    const Fit across = fit(corners, 0, tangent, centered);
+    const Fit along = fit(corners, 1, tangent * aspect, centered);
     double distance = 0;
     if (perspective) {
-        mHalfWidth = 0.5 * options.aperture / options.focal;
-        for (const openvdb::Vec3d& corner : corners) {
-            const double across =
-                std::max(std::abs(corner[0]), std::abs(corner[1]) / aspect) / mHalfWidth;
-            distance = std::max(distance, kMargin * across - corner[2]);
-        }
+        distance = std::max(across.reach / tangent, along.reach / (tangent * aspect));
     } else {
+        const double fitted = std::max(across.reach, along.reach / aspect);
         mHalfWidth = options.frame > 0 ? 0.5 * options.frame : kMargin * fitted;
-        distance = nearest + fitted;
+        for (const openvdb::Vec3d& corner : corners) {
+            distance = std::max(distance, fitted - corner[2]);
+        }
     }
     mHalfHeight = mHalfWidth * aspect;
-    mEye = options.eye.value_or(lookat - distance * mForward);
+    mEye = options.eye.value_or(lookat - distance * mForward + across.middle * mRight +
+                                along.middle * mUpward);
     if (!(mHalfWidth > 0)) refuse("view's width", 2 * mHalfWidth, "above 0");
 }
 
@@ -118,6 +135,8 @@ Ray Camera::ray(double x, double y) const {
     return {mEye, (mForward + offset).unit()};
 }
 
-double Camera::depth(const openvdb::Vec3d& point) const { return (point - mEye).dot(mForward); }
+double Camera::depth(const openvdb::Vec3d& point) const {
+    return (point - mEye).dot(mForward);
+}
 
 }  // namespace bandvox

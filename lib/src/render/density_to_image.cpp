@@ -14,6 +14,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -29,11 +30,11 @@ constexpr int kMostSamples = 4096;
 // Pixels along the side of what one task draws.
 constexpr int kImageTile = 32;
 
-// The eye cannot tell a finer reconstruction, and a coarser one would show.
+// The eye cannot tell a finer reconstruction; a coarser one is no picture of the density.
 constexpr double kFinestTolerance = 1e-4;
-constexpr double kCoarsestTolerance = 1e-2;
+constexpr double kCoarsestTolerance = 0.1;
 
-// A flat face is the steepest of solids under a filter that does not ring; others come close.
+// Of solids under a filter that does not ring a flat face is the steepest; others come close.
 constexpr double kSteepestMargin = 1.5;
 
 // Gradients below this part of a flat face's have no direction worth showing.
@@ -72,8 +73,9 @@ void requireDensity(const openvdb::FloatGrid& grid) {
     const std::string name = "the grid \"" + grid.getName() + "\" ";
     if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) {
         throw Error(ErrorKind::Input,
-                    name + "is a level set (signed distances); expected a density: convert it "
-                           "first, with `bandvox convert` or OpenVDB's sdfToFogVolume");
+                    name +
+                        "is a level set (signed distances); expected a density: convert it "
+                        "first, with `bandvox convert` or OpenVDB's sdfToFogVolume");
     }
     if (!grid.transform().isLinear()) {
         throw Error(ErrorKind::Input, name + "has a transform of type " +
@@ -143,9 +145,9 @@ class Scene {
           mFlat(kFlatGradient * faceGradient),
           mPlaces(samplePlaces(options.samples)) {
         const openvdb::Vec3d& light = options.light;
-        mLight = (light[0] * camera.right() + light[1] * camera.upward() -
-                  light[2] * camera.forward())
-                     .unit();
+        mLight =
+            (light[0] * camera.right() + light[1] * camera.upward() - light[2] * camera.forward())
+                .unit();
     }
 
     // Draws one pixel. Returns how many of its lines of sight hit.
@@ -179,8 +181,7 @@ class Scene {
   private:
     std::optional<Sight> look(const Ray& ray, DensityProbe& density) const {
         // Keep t: a length in world units, whatever the voxels' shape.
-        const Ray indexRay{mToIndex.transform(ray.origin),
-                           mToIndex.transform3x3(ray.direction)};
+        const Ray indexRay{mToIndex.transform(ray.origin), mToIndex.transform3x3(ray.direction)};
         const auto hit = mMarch.firstHit(indexRay, density);
         if (!hit) return std::nullopt;
         const openvdb::Vec3d position = ray.origin + hit->t * ray.direction;
@@ -228,10 +229,41 @@ Image blankImage(const RenderOptions& options, double iso,
     return image;
 }
 
+// How far lines of sight may step. Solids under the default filter have a sharp bound; others,
+// and what was not made by this library, are taken to be about as steep as a flat face.
+ClearDistance clearDistance(const openvdb::FloatGrid& grid,
+                            const std::optional<DensityMetadata>& metadata, double maximum,
+                            double iso, double faceSlope) {
+    constexpr double kRounding = 1e-2;
+    const double background = grid.background();
+    if (metadata && metadata->order == 2 && background == 0 && maximum < 1 + kRounding && iso < 1) {
+        return ClearDistance::ofGaussian(iso, metadata->cutoff);
+    }
+    const double range = std::max(1.0, maximum - background);
+    return ClearDistance::ofSlope(iso, background, kSteepestMargin * faceSlope * range);
+}
+
 // Memory for the reconstruction's bricks: what most pictures need, if the machine has it.
 std::size_t cacheBytes() {
     constexpr std::int64_t kLeast = std::int64_t(64) << 20, kMost = std::int64_t(2) << 30;
     return static_cast<std::size_t>(std::clamp(availableMemory() / 4, kLeast, kMost));
+}
+
+// Sharp filters keep more than can be read between the nodes to the finest tolerance: then read
+// them as well as can be.
+std::unique_ptr<Reconstruction> readLattice(const openvdb::FloatGrid::ConstPtr& grid,
+                                            const ExponentialFilter& filter, double tolerance) {
+    BrickReconstructionOptions options{filter, tolerance, cacheBytes()};
+    for (;; options.tolerance *= 3) {
+        try {
+            options.tolerance = std::min(options.tolerance, kCoarsestTolerance);
+            return makeBrickReconstruction(grid, options);
+        } catch (const Error& error) {
+            if (options.tolerance < kCoarsestTolerance) continue;
+            throw Error(ErrorKind::Input,
+                        "the grid \"" + grid->getName() + "\" cannot be read: " + error.what());
+        }
+    }
 }
 
 // Draws all pixels, a tile to a task. Returns how many lines of sight hit.
@@ -271,18 +303,15 @@ RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptio
     const Camera camera(options.camera, options.width, options.height, worldBox(*grid));
 
     // Read the lattice by the filter that it was made with.
-    BrickReconstructionOptions reading;
-    reading.cacheBytes = cacheBytes();
-    if (metadata) {
-        reading.filter = {metadata->order, metadata->cutoff};
-        reading.tolerance = std::clamp(metadata->tolerance, kFinestTolerance, kCoarsestTolerance);
-    }
-    const auto reconstruction = makeBrickReconstruction(grid, reading);
+    const auto filter =
+        metadata ? ExponentialFilter{metadata->order, metadata->cutoff} : ExponentialFilter();
+    const auto reconstruction =
+        readLattice(grid, filter, std::max(metadata ? metadata->tolerance : 0, kFinestTolerance));
 
     // Find where the surface can be. Between the nodes of the lattice the density can rise above
     // them: a Gaussian's by no more than its slope times half a voxel's diagonal, 0.24, and others
     // not much further; half the height is on the safe side.
-    const double slope = faceGradient(reading.filter);
+    const double slope = faceGradient(filter);
     const SurfaceBlocks blocks(*grid, 0.5 * (iso + grid->background()));
     if (blocks.empty()) {
         std::ostringstream message;
@@ -290,8 +319,7 @@ RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptio
                 << ", below the iso-value " << iso;
         throw Error(ErrorKind::Result, message.str());
     }
-    const double range = std::max(1.0, blocks.maximum() - grid->background());
-    const RayMarch march(blocks, iso, kSteepestMargin * slope * range);
+    const RayMarch march(blocks, iso, clearDistance(*grid, metadata, blocks.maximum(), iso, slope));
 
     // Draw.
     RenderResult result;

@@ -101,8 +101,7 @@ OIIO::ImageSpec pngSpec(const Image& image) {
 
 OIIO::ImageSpec exrSpec(const Image& image) {
     OIIO::ImageSpec spec(image.width, image.height, 11, OIIO::TypeDesc::FLOAT);
-    spec.channelnames = {"R",   "G",   "B",   "A",   "Z",  "N.X",
-                         "N.Y", "N.Z", "P.X", "P.Y", "P.Z"};
+    spec.channelnames = {"R", "G", "B", "A", "Z", "N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z"};
     spec.channelformats.assign(11, OIIO::TypeDesc::FLOAT);
     std::fill_n(spec.channelformats.begin(), 4, OIIO::TypeDesc::HALF);
     spec.alpha_channel = 3;

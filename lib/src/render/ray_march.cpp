@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace bandvox {
 
@@ -10,6 +11,10 @@ namespace {
 // Voxels.
 constexpr double kShortestStep = 0.25;
 constexpr double kRootError = 1e-5;
+
+// What a density may be off by: the tolerance of the lattice, cut off where it is not active, and
+// that of the reconstruction.
+constexpr double kDensityError = 1e-3;
 
 // A place on the ray and how far the density there is above iso.
 struct Sample {
@@ -27,11 +32,11 @@ double parabolaTop(const Sample& a, const Sample& b, const Sample& c) {
 // One line of sight on its way through the blocks.
 class March {
   public:
-    March(const Ray& ray, DensityProbe& density, double iso, double steepest)
+    March(const Ray& ray, DensityProbe& density, double iso, const ClearDistance& clear)
         : mRay(ray),
           mDensity(density),
           mIso(iso),
-          mSteepest(steepest),
+          mClear(clear),
           mVoxel(1 / ray.direction.length()) {}
 
     // Marches on through [t0, t1]. True once the surface is found.
@@ -42,7 +47,7 @@ class March {
             if (arrive(at(t0))) return true;
         }
         while (mLast.t < t1) {
-            const double step = std::max(kShortestStep, -mLast.above / mSteepest) * mVoxel;
+            const double step = std::max(kShortestStep, mClear(mLast.above)) * mVoxel;
             if (arrive(at(mLast.t + step))) return true;
         }
         return false;
@@ -91,8 +96,8 @@ class March {
         int side = 0;
         while (inside.t - outside.t > error) {
             const double width = inside.t - outside.t;
-            const double secant = outside.t + width * outside.above /
-                                                  (outside.above - inside.above);
+            const double secant =
+                outside.t + width * outside.above / (outside.above - inside.above);
             // Step a little over the root, so that the other end follows.
             const double guard = std::min(0.5 * error, 0.25 * width);
             const Sample next = at(std::clamp(secant, outside.t + guard, inside.t - guard));
@@ -112,7 +117,7 @@ class March {
     const Ray& mRay;
     DensityProbe& mDensity;
     double mIso;
-    double mSteepest;
+    const ClearDistance& mClear;
     double mVoxel;  // a voxel's length, in lengths of the direction
     int mSamples = 0;
     Sample mBefore{0, 0}, mLast{0, 0};
@@ -121,8 +126,35 @@ class March {
 
 }  // namespace
 
+ClearDistance::ClearDistance(double depth, const std::function<double(double)>& distance)
+    : mScale(kSteps / depth) {
+    for (int i = 0; i <= kSteps; ++i) {
+        mVoxels[i] = static_cast<float>(distance(i / mScale - kDensityError));
+    }
+}
+
+ClearDistance ClearDistance::ofSlope(double iso, double background, double steepest) {
+    return ClearDistance(iso - background, [&](double below) { return below / steepest; });
+}
+
+ClearDistance ClearDistance::ofGaussian(double iso, double cutoff) {
+    // Invert s(r) = erfc(π k_c r) / 2, the density outside a half-space, by bisection.
+    const auto distanceFromFace = [&](double density) {
+        double low = -20 / cutoff, high = 20 / cutoff;
+        for (int i = 0; i < 60; ++i) {
+            const double middle = 0.5 * (low + high);
+            const double found = 0.5 * std::erfc(std::numbers::pi * cutoff * middle);
+            (found > density ? low : high) = middle;
+        }
+        return low;
+    };
+    const double surface = distanceFromFace(iso);
+    return ClearDistance(iso,
+                         [&](double below) { return distanceFromFace(iso - below) - surface; });
+}
+
 std::optional<RayHit> RayMarch::firstHit(const Ray& ray, DensityProbe& density) const {
-    March march(ray, density, mIso, mSteepest);
+    March march(ray, density, mIso, mClear);
     bool found = false;
     mBlocks.walk(ray, [&](double t0, double t1) { return found = march.through(t0, t1); });
     if (!found) return std::nullopt;

@@ -5,6 +5,10 @@
 #include <bandvox/reconstruct/reconstruction.h>
 #include <bandvox/render/camera.h>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <functional>
 #include <optional>
 
 namespace bandvox {
@@ -15,13 +19,39 @@ struct RayHit {
     openvdb::Vec3d gradient{0, 0, 0};  ///< of the density, per voxel, along the index axes
 };
 
+/// How far, in voxels, from a place of some density the surface {density = iso} is at least. It
+/// sets the steps of a march.
+class ClearDistance {
+  public:
+    /// For densities that change by `steepest` per voxel at most.
+    static ClearDistance ofSlope(double iso, double background, double steepest);
+
+    /// For solids under a Gaussian filter: no solid comes nearer than a half-space of the same
+    /// density does, because Φ⁻¹(f~) changes by 1/σ per voxel at most, Φ being the normal
+    /// distribution. D. Bakry, M. Ledoux: "Lévy-Gromov's isoperimetric inequality for an infinite
+    /// dimensional diffusion generator" (1996).
+    static ClearDistance ofGaussian(double iso, double cutoff);
+
+    /// `above` is the density minus iso, not positive.
+    double operator()(double above) const {
+        const double place = std::clamp(-above * mScale, 0.0, double(kSteps));
+        return mVoxels[static_cast<std::size_t>(place)];
+    }
+
+  private:
+    ClearDistance(double depth, const std::function<double(double)>& distance);
+
+    static constexpr int kSteps = 256;
+    double mScale;                            // steps per density
+    std::array<float, kSteps + 1> mVoxels{};  // by density below iso, rounded down
+};
+
 /// Finds where lines of sight enter {density ≥ iso}.
 class RayMarch {
   public:
-    /// `steepest` is how fast the density changes at most, per voxel; > 0. It sets the steps,
-    /// which are never shorter than a quarter of a voxel.
-    RayMarch(const SurfaceBlocks& blocks, double iso, double steepest)
-        : mBlocks(blocks), mIso(iso), mSteepest(steepest) {}
+    /// Steps are as long as `clear` allows, but never shorter than a quarter of a voxel.
+    RayMarch(const SurfaceBlocks& blocks, double iso, const ClearDistance& clear)
+        : mBlocks(blocks), mIso(iso), mClear(clear) {}
 
     /// The first place on a ray, in index coordinates, t ≥ 0, where the density rises to iso: its
     /// origin if that is inside. Within 1e-5 voxels.
@@ -30,7 +60,7 @@ class RayMarch {
   private:
     const SurfaceBlocks& mBlocks;
     double mIso;
-    double mSteepest;
+    ClearDistance mClear;
 };
 
 }  // namespace bandvox

@@ -17,7 +17,7 @@ struct Ray {
 struct CameraOptions {
     enum class Projection { Perspective, Orthographic } projection = Projection::Perspective;
     std::optional<openvdb::Vec3d> eye;     ///< world; default: chosen so that the object fits
-    std::optional<openvdb::Vec3d> lookat;  ///< world; default: the middle of the object's box
+    std::optional<openvdb::Vec3d> lookat;  ///< world; default: the object is in the middle
     openvdb::Vec3d up{0, 1, 0};            ///< world direction that points up in the picture
     openvdb::Vec3d from{0.55, 0.35, 1};    ///< direction from the object to a chosen eye
     double focal = 50;                     ///< focal length, mm; > 0 (perspective)

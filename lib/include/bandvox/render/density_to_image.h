@@ -13,14 +13,14 @@ namespace bandvox {
 
 /// How a density is drawn.
 struct RenderOptions {
-    int width = 1024;             ///< pixels; 1 to 65536
-    int height = 1024;            ///< pixels; 1 to 65536
-    int samples = 1;              ///< lines of sight per pixel, on a regular grid; ≥ 1
+    int width = 1024;   ///< pixels; 1 to 65536
+    int height = 1024;  ///< pixels; 1 to 65536
+    int samples = 1;    ///< lines of sight per pixel, on a regular grid; ≥ 1
     CameraOptions camera;
-    std::optional<double> iso;    ///< default: what the grid's metadata says, else 0.5
-    openvdb::Vec3d light{-0.4, 0.7, 0.8};    ///< towards the light, in camera axes (right, up, back)
-    openvdb::Vec3d color{0.8, 0.8, 0.8};     ///< linear, of the surface
-    double ambient = 0.1;                    ///< light from everywhere, 0 to 1
+    std::optional<double> iso;             ///< default: what the grid's metadata says, else 0.5
+    openvdb::Vec3d light{-0.4, 0.7, 0.8};  ///< towards the light, in camera axes (right, up, back)
+    openvdb::Vec3d color{0.8, 0.8, 0.8};   ///< linear, of the surface
+    double ambient = 0.1;                  ///< light from everywhere, 0 to 1
     std::optional<openvdb::Vec3d> background;  ///< linear; default: transparent
 };
 

@@ -1,0 +1,195 @@
+#include <bandvox/core/error.h>
+#include <bandvox/render/image.h>
+
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using bandvox::Error;
+using bandvox::ErrorKind;
+using bandvox::Image;
+
+// A folder that lives as long as a test.
+class ImageFile : public testing::Test {
+  protected:
+    void SetUp() override {
+        mFolder = fs::temp_directory_path() / ("bandvox-image-" + std::to_string(getpid()));
+        fs::create_directories(mFolder);
+    }
+    void TearDown() override { fs::remove_all(mFolder); }
+
+    std::size_t filesInFolder() const {
+        return std::distance(fs::directory_iterator(mFolder), fs::directory_iterator());
+    }
+
+    fs::path mFolder;
+};
+
+// Pixel p has values that tell it from others; pixel 0 saw nothing.
+Image sampleImage(int width, int height) {
+    Image image;
+    image.width = width;
+    image.height = height;
+    for (int p = 0; p < width * height; ++p) {
+        const float alpha = p == 0 ? 0.0F : p == 1 ? 0.5F : 1.0F;
+        const float shade = static_cast<float>(p) / static_cast<float>(width * height);
+        for (const float c : {shade, 0.5F * shade, 0.25F}) image.color.push_back(alpha * c);
+        image.color.push_back(alpha);
+        image.depth.push_back(p == 0 ? std::numeric_limits<float>::infinity() : 100.1F + shade);
+        for (int c = 0; c < 3; ++c) {
+            image.normal.push_back(p == 0 ? 0 : shade - static_cast<float>(c));
+            image.position.push_back(p == 0 ? 0 : 1000.01F * static_cast<float>(c) + shade);
+        }
+    }
+    image.metadata = {{"Software", "Bandvox test"}, {"bandvox_iso", "0.5"}};
+    return image;
+}
+
+TEST_F(ImageFile, WritesEveryChannelOfAnExr) {
+    const Image image = sampleImage(7, 5);
+    writeImage(mFolder / "picture.EXR", image);
+    const auto input = OIIO::ImageInput::open((mFolder / "picture.EXR").string());
+    ASSERT_TRUE(input) << OIIO::geterror();
+    const OIIO::ImageSpec& spec = input->spec();
+    ASSERT_EQ(spec.width, 7);
+    ASSERT_EQ(spec.height, 5);
+    EXPECT_EQ(spec.get_string_attribute("Software"), "Bandvox test");
+    EXPECT_EQ(spec.get_string_attribute("bandvox_iso"), "0.5");
+    std::vector<float> data(std::size_t(35) * spec.nchannels);
+    ASSERT_TRUE(input->read_image(0, 0, 0, -1, OIIO::TypeDesc::FLOAT, data.data()));
+
+    std::map<std::string, int> channels;
+    for (int c = 0; c < spec.nchannels; ++c) channels[spec.channelnames[c]] = c;
+    const auto expect = [&](const char* name, OIIO::TypeDesc type, const std::vector<float>& from,
+                            int width, int at, double error) {
+        ASSERT_TRUE(channels.count(name)) << name;
+        EXPECT_EQ(spec.channelformat(channels[name]), type) << name;
+        for (int p = 0; p < 35; ++p) {
+            const float found = data[std::size_t(p) * spec.nchannels + channels[name]];
+            const float expected = from[std::size_t(p) * width + at];
+            if (std::isinf(expected)) {
+                EXPECT_EQ(found, expected) << name;
+            } else {
+                EXPECT_NEAR(found, expected, error) << name;
+            }
+        }
+    };
+    const char* const colors[] = {"R", "G", "B", "A"};
+    const char* const normals[] = {"N.X", "N.Y", "N.Z"};
+    const char* const positions[] = {"P.X", "P.Y", "P.Z"};
+    for (int c = 0; c < 4; ++c) {
+        expect(colors[c], OIIO::TypeDesc::HALF, image.color, 4, c, 5e-4);
+    }
+    expect("Z", OIIO::TypeDesc::FLOAT, image.depth, 1, 0, 0);
+    for (int c = 0; c < 3; ++c) {
+        expect(normals[c], OIIO::TypeDesc::FLOAT, image.normal, 3, c, 0);
+        expect(positions[c], OIIO::TypeDesc::FLOAT, image.position, 3, c, 0);
+    }
+    EXPECT_EQ(channels.size(), 11u);
+}
+
+TEST_F(ImageFile, WritesAPngInSrgbWithAlphaBeside) {
+    const Image image = sampleImage(16, 16);
+    writeImage(mFolder / "picture.png", image);
+    OIIO::ImageSpec asIs;
+    asIs.attribute("oiio:UnassociatedAlpha", 1);
+    const auto input = OIIO::ImageInput::open((mFolder / "picture.png").string(), &asIs);
+    ASSERT_TRUE(input) << OIIO::geterror();
+    EXPECT_EQ(input->spec().format, OIIO::TypeDesc::UINT8);
+    EXPECT_EQ(input->spec().get_string_attribute("Software"), "Bandvox test");
+    ASSERT_EQ(input->spec().nchannels, 4);
+    std::vector<std::uint8_t> data(16 * 16 * 4);
+    ASSERT_TRUE(input->read_image(0, 0, 0, 4, OIIO::TypeDesc::UINT8, data.data()));
+    EXPECT_EQ(data[3], 0);
+    EXPECT_EQ(data[4 + 3], 128);
+    // Half covered and opaque pixels show the same blue: linear 0.25 is 137 in sRGB.
+    EXPECT_EQ(data[4 + 2], 137);
+    EXPECT_EQ(data[4 * 200 + 2], 137);
+    EXPECT_EQ(data[4 * 128], 188);  // linear 0.5
+    EXPECT_EQ(data[4 * 200 + 3], 255);
+}
+
+TEST_F(ImageFile, KeepsColorsOutOfRangeInAnExrAndLimitsThemInAPng) {
+    Image image = sampleImage(2, 2);
+    image.color[12] = 20;
+    image.color[13] = -1;
+    writeImage(mFolder / "picture.exr", image);
+    writeImage(mFolder / "picture.png", image);
+    std::vector<std::uint8_t> data(16);
+    const auto png = OIIO::ImageInput::open((mFolder / "picture.png").string());
+    ASSERT_TRUE(png && png->read_image(0, 0, 0, 4, OIIO::TypeDesc::UINT8, data.data()));
+    EXPECT_EQ(data[12], 255);
+    EXPECT_EQ(data[13], 0);
+    std::vector<float> half(4 * 11);
+    const auto exr = OIIO::ImageInput::open((mFolder / "picture.exr").string());
+    ASSERT_TRUE(exr && exr->read_image(0, 0, 0, -1, OIIO::TypeDesc::FLOAT, half.data()));
+    const auto& names = exr->spec().channelnames;
+    const auto red = std::find(names.begin(), names.end(), "R") - names.begin();
+    EXPECT_EQ(half[3 * 11 + red], 20);
+}
+
+TEST_F(ImageFile, RefusesOtherExtensionsAndIncompleteImages) {
+    EXPECT_TRUE(bandvox::isImageFile("a/b.PNG"));
+    EXPECT_TRUE(bandvox::isImageFile("b.exr"));
+    EXPECT_FALSE(bandvox::isImageFile("b.jpg"));
+    EXPECT_FALSE(bandvox::isImageFile("png"));
+    Image noDepth = sampleImage(3, 3);
+    noDepth.depth.pop_back();
+    const auto kind = [&](const fs::path& path, const Image& image) {
+        try {
+            bandvox::writeImage(path, image);
+        } catch (const Error& error) {
+            return error.kind();
+        }
+        ADD_FAILURE() << path << " was written";
+        return ErrorKind::Result;
+    };
+    EXPECT_EQ(kind(mFolder / "a.jpg", sampleImage(3, 3)), ErrorKind::Usage);
+    EXPECT_EQ(kind(mFolder / "a.exr", noDepth), ErrorKind::Usage);
+    EXPECT_EQ(kind(mFolder / "a.png", Image()), ErrorKind::Usage);
+    EXPECT_EQ(kind(mFolder / "none" / "a.png", sampleImage(3, 3)), ErrorKind::Runtime);
+    EXPECT_EQ(filesInFolder(), 0u);
+}
+
+TEST_F(ImageFile, LeavesTheOldFileWhenTheDiskIsFull) {
+    const fs::path path = mFolder / "picture.exr";
+    writeImage(path, sampleImage(2, 2));
+    const auto before = fs::file_size(path);
+
+    // A limit on the size of files fails writes as a full disk does.
+    rlimit old{};
+    getrlimit(RLIMIT_FSIZE, &old);
+    const auto oldHandler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit low{16384, old.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &low);
+    ErrorKind kind = ErrorKind::Result;
+    std::string message;
+    try {
+        bandvox::writeImage(path, sampleImage(256, 256));
+    } catch (const Error& error) {
+        kind = error.kind();
+        message = error.what();
+    }
+    setrlimit(RLIMIT_FSIZE, &old);
+    std::signal(SIGXFSZ, oldHandler);
+    EXPECT_EQ(kind, ErrorKind::Runtime);
+    EXPECT_NE(message.find("too large"), std::string::npos) << message;
+    EXPECT_EQ(fs::file_size(path), before);
+    EXPECT_EQ(filesInFolder(), 1u);
+}
+
+}  // namespace

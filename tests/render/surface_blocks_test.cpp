@@ -1,0 +1,103 @@
+#include "render/surface_blocks.h"
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+#include <cmath>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using bandvox::Ray;
+using bandvox::SurfaceBlocks;
+using openvdb::Coord;
+using openvdb::Vec3d;
+
+std::vector<std::pair<double, double>> spans(const SurfaceBlocks& blocks, const Ray& ray) {
+    std::vector<std::pair<double, double>> all;
+    blocks.walk(ray, [&](double t0, double t1) {
+        all.emplace_back(t0, t1);
+        return false;
+    });
+    return all;
+}
+
+// A few voxels and tiles of different sizes far apart, on both sides of 0.
+openvdb::FloatGrid::Ptr scatteredGrid() {
+    auto grid = openvdb::FloatGrid::create(0);
+    auto accessor = grid->getAccessor();
+    std::mt19937 random(3);
+    std::uniform_int_distribution<int> place(-150, 150);
+    for (int i = 0; i < 60; ++i) {
+        accessor.setValue(Coord(place(random), place(random), place(random)), i % 2 ? 1.0F : 0.3F);
+    }
+    grid->tree().addTile(1, Coord(-64, 8, 40), 1.0F, true);     // 8³ voxels
+    grid->tree().addTile(2, Coord(128, 128, 128), 1.0F, true);  // 128³ voxels
+    return grid;
+}
+
+TEST(SurfaceBlocks, MeetsEveryPlaceNearAHighValue) {
+    const auto grid = scatteredGrid();
+    const SurfaceBlocks blocks(*grid, 0.5);
+    EXPECT_EQ(blocks.maximum(), 1);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> place(-200, 300), offset(-1.9, 1.9);
+    for (auto value = grid->cbeginValueOn(); value; ++value) {
+        if (value.getValue() < 0.5F) continue;
+        for (int i = 0; i < 200; ++i) {
+            // A line of sight with a direction of any length, to a place near the value's box.
+            const Vec3d origin(place(random), place(random), place(random));
+            const auto box = value.getBoundingBox();
+            const Vec3d corner = (i % 2 ? box.min() : box.max()).asVec3d();
+            const Vec3d target = corner + Vec3d(offset(random), offset(random), offset(random));
+            const auto all = spans(blocks, {origin, (target - origin) * 0.37});
+            bool met = false;
+            for (const auto& [t0, t1] : all) {
+                met = met || (t0 <= 1 / 0.37 + 1e-9 && t1 >= 1 / 0.37 - 1e-9);
+            }
+            ASSERT_TRUE(met) << origin << target;
+            for (std::size_t s = 1; s < all.size(); ++s) {
+                ASSERT_GE(all[s].first, all[s - 1].second - 1e-9) << "out of order";
+            }
+        }
+    }
+}
+
+TEST(SurfaceBlocks, SkipsWhatIsFarFromHighValues) {
+    auto grid = openvdb::FloatGrid::create(0);
+    grid->tree().setValue(Coord(100, 100, 100), 1.0F);
+    grid->tree().setValue(Coord(20, 20, 20), 0.4F);
+    const SurfaceBlocks blocks(*grid, 0.5);
+    EXPECT_TRUE(spans(blocks, {Vec3d(0, 20, 20), Vec3d(1, 0, 0)}).empty());
+    EXPECT_TRUE(spans(blocks, {Vec3d(200, 100, 100), Vec3d(1, 0, 0)}).empty()) << "behind";
+    double length = 0;
+    for (const auto& [t0, t1] : spans(blocks, {Vec3d(0, 100, 100), Vec3d(1, 0, 0)})) {
+        length += t1 - t0;
+    }
+    EXPECT_GE(length, 5);
+    EXPECT_LE(length, 16);
+    EXPECT_FALSE(spans(blocks, {Vec3d(100, 100, 100), Vec3d(0, 0, 1)}).empty()) << "from inside";
+}
+
+TEST(SurfaceBlocks, IsEmptyWithoutHighValues) {
+    auto grid = openvdb::FloatGrid::create(0);
+    EXPECT_TRUE(SurfaceBlocks(*grid, 0.5).empty());
+    grid->tree().setValue(Coord(1, 2, 3), 0.4F);
+    const SurfaceBlocks blocks(*grid, 0.5);
+    EXPECT_TRUE(blocks.empty());
+    EXPECT_FLOAT_EQ(static_cast<float>(blocks.maximum()), 0.4F);
+    EXPECT_TRUE(spans(blocks, {Vec3d(0, 0, 0), Vec3d(1, 2, 3)}).empty());
+}
+
+TEST(SurfaceBlocks, StopsWhenToldTo) {
+    auto grid = openvdb::FloatGrid::create(0);
+    grid->tree().addTile(2, Coord(0), 1.0F, true);
+    const SurfaceBlocks blocks(*grid, 0.5);
+    int visits = 0;
+    blocks.walk({Vec3d(-50, 3, 3), Vec3d(1, 0, 0)}, [&](double, double) { return ++visits == 2; });
+    EXPECT_EQ(visits, 2);
+}
+
+}  // namespace
