@@ -112,7 +112,10 @@ nlohmann::ordered_json gridReport(const openvdb::GridBase& grid) {
         report["index_bounds"] = nullptr;
         report["world_bounds"] = nullptr;
     } else {
-        const openvdb::BBoxd world = grid.transform().indexToWorld(box);
+        // Voxel centres lie at whole indices.
+        const openvdb::Vec3d half(0.5);
+        const openvdb::BBoxd world = grid.transform().indexToWorld(
+            openvdb::BBoxd(box.min().asVec3d() - half, box.max().asVec3d() + half));
         report["index_bounds"] = {{"min", toJson(box.min())}, {"max", toJson(box.max())}};
         report["world_bounds"] = {{"min", toJson(world.min())}, {"max", toJson(world.max())}};
     }

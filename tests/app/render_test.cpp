@@ -89,7 +89,7 @@ TEST_F(Render, TakesEveryCameraOption) {
          "--stats",      "r.json"});
     ASSERT_EQ(result.status, 0) << result.err;
     const auto statistics = nlohmann::json::parse(readText(mFolder / "r.json"));
-    EXPECT_EQ(statistics.at("counts").at("rays"), 16 * 16 * 4);
+    EXPECT_EQ(statistics.at("counts").at("rays"), 16 * 16 * 2);
     EXPECT_GT(statistics.at("counts").at("hits").get<int>(), 0);
 }
 
