@@ -82,7 +82,7 @@ void requireDensity(const openvdb::FloatGrid& grid) {
                                           grid.transform().mapType() +
                                           ", which bends lines of sight; expected a linear one");
     }
-    if (grid.tree().empty() || grid.activeVoxelCount() == 0) {
+    if (grid.evalActiveVoxelBoundingBox().empty()) {
         throw Error(ErrorKind::Input, name + "has no active voxel; expected a density");
     }
 }
