@@ -14,7 +14,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-double sinc(double x) { return std::abs(x) < 1e-6 ? 1 - x * x / 6 : std::sin(x) / x; }
+double sinc(double x) {
+    return std::abs(x) < 1e-6 ? 1 - x * x / 6 : std::sin(x) / x;
+}
 
 }  // namespace
 
@@ -40,8 +42,7 @@ ClosedFormDensity::ClosedFormDensity(int side, const ExponentialFilter& filter,
             }
         }
     }
-    fftw_plan plan =
-        fftw_plan_dft_c2r_3d(side, side, side, series, mValues.data(), FFTW_ESTIMATE);
+    fftw_plan plan = fftw_plan_dft_c2r_3d(side, side, side, series, mValues.data(), FFTW_ESTIMATE);
     fftw_execute(plan);
     fftw_destroy_plan(plan);
     fftw_free(series);
@@ -109,20 +110,20 @@ ClosedFormDensity::Transform ballTransform(double radius, const openvdb::Vec3d& 
 
 Mesh ballMesh(double radius, const openvdb::Vec3d& center, int levels) {
     const double golden = std::numbers::phi;
-    std::vector<openvdb::Vec3d> points = {
-        {-1, golden, 0}, {1, golden, 0}, {-1, -golden, 0}, {1, -golden, 0},
-        {0, -1, golden}, {0, 1, golden}, {0, -1, -golden}, {0, 1, -golden},
-        {golden, 0, -1}, {golden, 0, 1}, {-golden, 0, -1}, {-golden, 0, 1}};
+    std::vector<openvdb::Vec3d> points = {{-1, golden, 0},  {1, golden, 0},   {-1, -golden, 0},
+                                          {1, -golden, 0},  {0, -1, golden},  {0, 1, golden},
+                                          {0, -1, -golden}, {0, 1, -golden},  {golden, 0, -1},
+                                          {golden, 0, 1},   {-golden, 0, -1}, {-golden, 0, 1}};
     for (openvdb::Vec3d& point : points) point.normalize();
     std::vector<openvdb::Vec3I> triangles = {
-        {0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+        {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
         {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-        {3, 8, 9},  {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+        {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
     for (int level = 0; level < levels; ++level) {
         std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
         const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-            const auto [found, isNew] = middles.try_emplace(
-                std::minmax(a, b), static_cast<std::uint32_t>(points.size()));
+            const auto [found, isNew] =
+                middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(points.size()));
             if (isNew) points.push_back((points[a] + points[b]).unit());
             return found->second;
         };

@@ -66,9 +66,14 @@ TEST(ExponentialFilter, OnlyGaussiansDoNotRing) {
 
 TEST(ExponentialFilter, RefusesWhatMakesNoSense) {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    for (const ExponentialFilter filter :
-         {ExponentialFilter{0, 0.16}, {-2, 0.16}, {2, 0}, {2, -0.1}, {2, 0.6}, {100, 0.2},
-          {kNaN, 0.2}, {2, kNaN}}) {
+    for (const ExponentialFilter filter : {ExponentialFilter{0, 0.16},
+                                           {-2, 0.16},
+                                           {2, 0},
+                                           {2, -0.1},
+                                           {2, 0.6},
+                                           {100, 0.2},
+                                           {kNaN, 0.2},
+                                           {2, kNaN}}) {
         EXPECT_THROW(requireValid(filter), Error) << filter.order << " " << filter.cutoff;
     }
     EXPECT_NO_THROW(requireValid({2, 0.16}));

@@ -67,8 +67,8 @@ TEST_P(RealFft3OfSize, EqualsTheDirectSum) {
     for (int x = 0; x < n; ++x) {
         for (int y = 0; y < n; ++y) {
             for (int z = 0; z < n; ++z) {
-                ASSERT_NEAR(buffer[at(x, y) + z] / (n * n * n),
-                            samples[(x * n + y) * n + z].real(), 1e-5);
+                ASSERT_NEAR(buffer[at(x, y) + z] / (n * n * n), samples[(x * n + y) * n + z].real(),
+                            1e-5);
             }
         }
     }

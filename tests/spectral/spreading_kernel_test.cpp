@@ -47,7 +47,8 @@ TEST_P(SpreadingKernelOfWidth, WeightsAreTheKernelAtTheNodes) {
             EXPECT_NEAR(weights[j], kernel(distance), 1e-6 * scale) << x << " " << j;
             // The derivative with respect to the place has the opposite sign. The kernel ends
             // with a small step, where its own derivative is not smooth.
-            EXPECT_NEAR(derivatives[j], -kernel.derivative(distance), 3e-5 * scale) << x << " " << j;
+            EXPECT_NEAR(derivatives[j], -kernel.derivative(distance), 3e-5 * scale)
+                << x << " " << j;
         }
         for (int j = kernel.width(); j < kernel.paddedWidth(); ++j) {
             EXPECT_EQ(weights[j], 0);
@@ -87,11 +88,10 @@ TEST(SpreadingKernel, AliasErrorBoundsTheHalfSpace) {
                         const double shift = x - (64 + phase);
                         for (int m = -3; m <= 3; ++m) {
                             seen += kernel.transform(k + m) *
-                                    std::sin(2 * std::numbers::pi *
-                                             (k * shift - m * (64 + phase)));
+                                    std::sin(2 * std::numbers::pi * (k * shift - m * (64 + phase)));
                         }
-                        density += 4 * filter(k) / kernel.transform(k) * seen /
-                                   (2 * std::numbers::pi * i);
+                        density +=
+                            4 * filter(k) / kernel.transform(k) * seen / (2 * std::numbers::pi * i);
                     }
                     const double truth = 0.5 - halfSpaceDensity(filter, x - 64 - phase);
                     worst = std::max(worst, std::abs(density - truth));
