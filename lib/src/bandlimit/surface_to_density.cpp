@@ -68,7 +68,7 @@ double estimateMemory(const BoundarySource& source, const TilePlan& plan, const 
     constexpr double kBytesPerLeaf = 2048 + 128;
     constexpr double kBorderShare = 1.4;  // blocks at the columns' borders exist twice for a while
     const double area = source.area() / (layout.voxelSize * layout.voxelSize);
-    const double thickness = 2.0 * plan.halo / 2 + DensityLeaf::DIM;
+    const double thickness = plan.halo + DensityLeaf::DIM;  // of the leaves along the surface
     const double leaves = area * thickness / DensityLeaf::SIZE;
     const double columns = static_cast<double>(layout.count.y()) * layout.count.z();
     const double perThread = 4.0 * static_cast<double>(filter.bufferSize()) +
