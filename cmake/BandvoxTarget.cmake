@@ -2,7 +2,7 @@
 function(bandvox_configure_target target)
     target_compile_options(${target} PRIVATE
         -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align
-        -Wimplicit-fallthrough
+        -Wimplicit-fallthrough -Wno-missing-field-initializers
         $<$<BOOL:${BANDVOX_WARNINGS_AS_ERRORS}>:-Werror>)
     if(BANDVOX_SANITIZE)
         target_compile_options(${target} PRIVATE -fsanitize=${BANDVOX_SANITIZE}

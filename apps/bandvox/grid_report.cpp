@@ -13,6 +13,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kOwnPrefix = "bandvox_";
 
+/// True for metadata that say again what the report says under another key.
+bool isReportedElsewhere(const std::string& name) {
+    using openvdb::GridBase;
+    return name == GridBase::META_GRID_NAME || name == GridBase::META_GRID_CLASS ||
+           name == GridBase::META_SAVE_HALF_FLOAT;
+}
+
 Json toJson(const openvdb::Vec3d& vector) {
     return Json::array({vector.x(), vector.y(), vector.z()});
 }
@@ -105,7 +112,10 @@ nlohmann::ordered_json gridReport(const openvdb::GridBase& grid) {
         report["index_bounds"] = nullptr;
         report["world_bounds"] = nullptr;
     } else {
-        const openvdb::BBoxd world = grid.transform().indexToWorld(box);
+        // Voxel centres lie at whole indices.
+        const openvdb::Vec3d half(0.5);
+        const openvdb::BBoxd world = grid.transform().indexToWorld(
+            openvdb::BBoxd(box.min().asVec3d() - half, box.max().asVec3d() + half));
         report["index_bounds"] = {{"min", toJson(box.min())}, {"max", toJson(box.max())}};
         report["world_bounds"] = {{"min", toJson(world.min())}, {"max", toJson(world.max())}};
     }
@@ -122,7 +132,7 @@ nlohmann::ordered_json gridReport(const openvdb::GridBase& grid) {
             report["compression"] = toJson(*entry->second);
         } else if (name.starts_with(kOwnPrefix)) {
             own[name.substr(kOwnPrefix.size())] = toJson(*entry->second);
-        } else {
+        } else if (!isReportedElsewhere(name)) {
             others[name] = toJson(*entry->second);
         }
     }

@@ -5,7 +5,6 @@
 #include "sample_files.h"
 
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 namespace bandvox::app_test {
@@ -77,8 +76,8 @@ TEST_F(BadInput, UnknownKind) {
 }
 
 TEST_F(BadInput, EmptyFile) {
-    for (const char* name : {"a.obj", "a.ply", "a.stl", "a.off", "a.gltf", "a.glb", "a.fbx",
-                             "a.dae"}) {
+    for (const char* name :
+         {"a.obj", "a.ply", "a.stl", "a.off", "a.gltf", "a.glb", "a.fbx", "a.dae"}) {
         expectBadMesh(name, "", 3);
     }
     writeText(mFolder / "a.vdb", "");
@@ -134,9 +133,12 @@ TEST_F(BadInput, FlatMesh) {
 TEST_F(BadInput, MoreMemoryThanThereIs) {
     writeText(mFolder / "cube.obj", cubeObj());
     expectFailure({"convert", "cube.obj", "-o", "out.vdb", "--voxel-size", "1e-7"}, 5, {"memory"});
-    expectFailure({"convert", "cube.obj", "-o", "out.vdb", "--voxel-size", "1e-300"}, 5,
-                  {"memory"});
     expectFailure({"convert", "shape:sphere", "-o", "out.vdb", "-r", "1000000"}, 5, {"memory"});
+}
+
+TEST_F(BadInput, VoxelsBeyondAnyIndex) {
+    expectFailure({"convert", "shape:cube", "-o", "out.vdb", "--voxel-size", "1e-300"}, 2,
+                  {"voxel"});
 }
 
 TEST_F(BadInput, OutputThatCannotBeWritten) {
@@ -145,8 +147,8 @@ TEST_F(BadInput, OutputThatCannotBeWritten) {
     std::filesystem::create_directory(mFolder / "dir.vdb");
     for (const std::string output : {"none/out.vdb", "file/out.vdb", "dir.vdb", "/proc/out.vdb"}) {
         // Known before the work: not a word about the mesh.
-        const RunResult result = runBandvox({"convert", "cube.obj", "-o", output},
-                                            {.folder = mFolder.path()});
+        const RunResult result =
+            runBandvox({"convert", "cube.obj", "-o", output}, {.folder = mFolder.path()});
         EXPECT_EQ(result.err.find("triangles"), std::string::npos) << result.err;
         expectFailure({"convert", "cube.obj", "-o", output}, 1, {output});
     }
@@ -157,8 +159,8 @@ TEST_F(BadInput, OutputThatCannotBeWritten) {
 TEST_F(BadInput, ReadOnlyFolder) {
     const auto folder = mFolder / "locked";
     std::filesystem::create_directory(folder);
-    std::filesystem::permissions(folder, std::filesystem::perms::owner_read |
-                                             std::filesystem::perms::owner_exec);
+    std::filesystem::permissions(
+        folder, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
     if (access(folder.c_str(), W_OK) == 0) GTEST_SKIP() << "this user may write everywhere";
     expectFailure({"convert", "shape:cube", "-o", "locked/out.vdb"}, 1, {"locked/out.vdb"});
 }

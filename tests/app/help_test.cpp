@@ -130,9 +130,9 @@ TEST(Usage, ReadsNumbersStrictly) {
     convert("--iso", "0");
     convert("--iso", "1");
     convert("--compression", "lzma");
-    expectUsageError({"convert", "shape:cube", "-o", "a.vdb", "--resolution", "9", "--voxel-size",
-                      "1"},
-                     {"--resolution", "--voxel-size"});
+    expectUsageError(
+        {"convert", "shape:cube", "-o", "a.vdb", "--resolution", "9", "--voxel-size", "1"},
+        {"--resolution", "--voxel-size"});
 }
 
 TEST(Usage, ReadsVectorsStrictly) {

@@ -85,9 +85,8 @@ TEST(Info, TakesGridsOfAnyType) {
 TEST(Info, ReaderThatGoesAwayIsNoFailure) {
     const TemporaryFolder folder;
     writeSeveralGrids(folder / "several.vdb");
-    const RunResult result =
-        runBandvox({"info", "several.vdb"},
-                   {.folder = folder.path(), .standardOutputClosed = true});
+    const RunResult result = runBandvox({"info", "several.vdb"},
+                                        {.folder = folder.path(), .standardOutputClosed = true});
     EXPECT_EQ(result.status, 0);
     EXPECT_EQ(result.err, "");
 }
@@ -95,9 +94,8 @@ TEST(Info, ReaderThatGoesAwayIsNoFailure) {
 TEST(Info, FullStandardOutputIsAFailure) {
     const TemporaryFolder folder;
     writeSeveralGrids(folder / "several.vdb");
-    const RunResult result =
-        runBandvox({"info", "several.vdb"},
-                   {.folder = folder.path(), .standardOutput = "/dev/full"});
+    const RunResult result = runBandvox({"info", "several.vdb"},
+                                        {.folder = folder.path(), .standardOutput = "/dev/full"});
     EXPECT_EQ(result.status, 1);
     EXPECT_EQ(countLines(result.err, "bandvox: error: "), 1) << result.err;
     EXPECT_NE(result.err.find("standard output"), std::string::npos) << result.err;
@@ -106,8 +104,8 @@ TEST(Info, FullStandardOutputIsAFailure) {
 TEST(Info, WritesStatistics) {
     const TemporaryFolder folder;
     writeSeveralGrids(folder / "several.vdb");
-    const RunResult result = runBandvox({"info", "several.vdb", "--stats", "s.json"},
-                                        {.folder = folder.path()});
+    const RunResult result =
+        runBandvox({"info", "several.vdb", "--stats", "s.json"}, {.folder = folder.path()});
     EXPECT_EQ(result.status, 0) << result.err;
     const Json statistics = Json::parse(readText(folder / "s.json"));
     EXPECT_EQ(statistics.at("command"), "info");

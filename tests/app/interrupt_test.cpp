@@ -19,8 +19,9 @@ RunOptions interruptIn(const TemporaryFolder& folder, int signal) {
 }
 
 /// Work of several seconds on one thread.
-const Names kLongConvert{"convert", "shape:tree", "-o", "out.vdb", "--resolution", "1200",
-                         "--threads", "1", "--progress", "always", "--stats", "s.json"};
+const Names kLongConvert{"convert",      "shape:tree", "-o",        "out.vdb",
+                         "--resolution", "1200",       "--threads", "1",
+                         "--progress",   "always",     "--stats",   "s.json"};
 
 TEST(Interrupt, ConvertLeavesNothing) {
     for (const auto& [signal, status] :
@@ -49,10 +50,10 @@ TEST(Interrupt, ConvertKeepsAnOlderOutput) {
 
 TEST(Interrupt, RenderLeavesNothing) {
     const TemporaryFolder folder;
-    ASSERT_EQ(runBandvox({"convert", "shape:torus", "-o", "t.vdb", "-r", "64"},
-                         {.folder = folder.path()})
-                  .status,
-              0);
+    ASSERT_EQ(
+        runBandvox({"convert", "shape:torus", "-o", "t.vdb", "-r", "64"}, {.folder = folder.path()})
+            .status,
+        0);
     const RunResult result =
         runBandvox({"render", "t.vdb", "-o", "t.png", "--res", "4000x4000", "--samples", "4",
                     "--threads", "1", "--progress", "always"},

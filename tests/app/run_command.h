@@ -29,10 +29,10 @@ class TemporaryFolder {
 
 /// How a program is run.
 struct RunOptions {
-    std::filesystem::path folder = "/";       ///< working folder
+    std::filesystem::path folder = "/";         ///< working folder
     std::optional<std::string> standardOutput;  ///< file to use instead of collecting the output
-    bool standardOutputClosed = false;        ///< its reader has gone away
-    std::optional<long> largestFile;          ///< bytes; writing more fails, as on a full disk
+    bool standardOutputClosed = false;          ///< its reader has gone away
+    std::optional<long> largestFile;            ///< bytes; writing more fails, as on a full disk
     /// Called again and again while the program runs, with what it has said on the standard error
     /// so far; a signal that it returns is sent, once.
     std::function<int(const std::string& said)> signalWhen;
@@ -40,9 +40,9 @@ struct RunOptions {
 
 /// What a program did.
 struct RunResult {
-    int status = -1;     ///< exit status; 128 + s if signal s ended it
-    std::string out;     ///< standard output
-    std::string err;     ///< standard error
+    int status = -1;  ///< exit status; 128 + s if signal s ended it
+    std::string out;  ///< standard output
+    std::string err;  ///< standard error
     bool signalSent = false;
 };
 

@@ -107,16 +107,15 @@ std::string cubeGlb() {
     for (const Triangle& t : triangles()) {
         for (const unsigned i : t) append(buffer, static_cast<std::uint16_t>(i));
     }
-    std::string json =
-        R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
-        R"("nodes":[{"mesh":0}],)"
-        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
-        R"("buffers":[{"byteLength":168}],"bufferViews":[)"
-        R"({"buffer":0,"byteOffset":0,"byteLength":96},)"
-        R"({"buffer":0,"byteOffset":96,"byteLength":72}],"accessors":[)"
-        R"({"bufferView":0,"componentType":5126,"count":8,"type":"VEC3",)"
-        R"("min":[-1,-1,-1],"max":[1,1,1]},)"
-        R"({"bufferView":1,"componentType":5123,"count":36,"type":"SCALAR"}]})";
+    std::string json = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
+                       R"("nodes":[{"mesh":0}],)"
+                       R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+                       R"("buffers":[{"byteLength":168}],"bufferViews":[)"
+                       R"({"buffer":0,"byteOffset":0,"byteLength":96},)"
+                       R"({"buffer":0,"byteOffset":96,"byteLength":72}],"accessors":[)"
+                       R"({"bufferView":0,"componentType":5126,"count":8,"type":"VEC3",)"
+                       R"("min":[-1,-1,-1],"max":[1,1,1]},)"
+                       R"({"bufferView":1,"componentType":5123,"count":36,"type":"SCALAR"}]})";
     while (json.size() % 4 != 0) json += ' ';
 
     std::string bytes = "glTF";

@@ -47,18 +47,17 @@ void joinPieces(LeafList pieces, float threshold, LeafList& whole,
     }
 }
 
-// Sets which voxels are active; the others become exactly the background. Returns false if none
-// is left.
+// Makes values next to a whole number that number, voxel by voxel, so that where the blocks lie
+// does not show; sets which voxels are active. Returns false if none is.
 bool finishLeaf(DensityLeaf& leaf, const AssemblyOptions& options) {
+    const auto threshold = static_cast<float>(options.threshold);
     float* values = leaf.buffer().data();
     DensityLeaf::NodeMaskType active;
     for (openvdb::Index v = 0; v < DensityLeaf::SIZE; ++v) {
+        const float whole = std::nearbyint(values[v]);
+        if (std::abs(values[v] - whole) <= threshold) values[v] = whole;
         if (options.clamp) values[v] = std::clamp(values[v], 0.0F, 1.0F);
-        if (std::abs(values[v]) > static_cast<float>(options.threshold)) {
-            active.setOn(v);
-        } else {
-            values[v] = 0;
-        }
+        if (values[v] != 0) active.setOn(v);
     }
     leaf.setValueMask(active);
     return !active.isOff();

@@ -8,7 +8,7 @@ namespace bandvox {
 
 struct AssemblyOptions {
     double voxelSize;  ///< world units
-    double threshold;  ///< values nearer to 0 or 1 than this are stored as 0 or 1
+    double threshold;  ///< values nearer to a whole number than this are stored as it
     bool clamp;        ///< limit values to [0, 1]
 };
 

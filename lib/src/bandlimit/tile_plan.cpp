@@ -33,8 +33,8 @@ int chooseSide(int halo) {
 }
 
 SpreadingKernel chooseKernel(const ExponentialFilter& filter, double tolerance) {
-    // What the lattice cannot hold, it cannot be spread to either: ask no more of the kernel than
-    // the filter leaves at Nyquist, and where even that is too much take what there is.
+    // What the lattice cannot hold, it cannot be spread to either, and trying amplifies rounding:
+    // ask no more of the kernel than a tenth of what the filter leaves at Nyquist.
     for (double asked = std::max(tolerance, 0.1 * filter.atNyquist());; asked *= 2) {
         try {
             return SpreadingKernel::forFilter(filter, asked);

@@ -19,7 +19,7 @@ struct TilePlan {
     int halo;          ///< on each side of the interior; the filter's reach, rounded up
     int side;          ///< of the cube that is transformed
     int interior;      ///< side - 2 halo: of the cube that is kept
-    double threshold;  ///< density; values nearer to 0 or 1 than this are stored as 0 or 1
+    double threshold;  ///< density; values nearer to a whole number than this are stored as it
 };
 
 /// Throws Error(ErrorKind::Usage) if the tile asked for does not hold its own halo.

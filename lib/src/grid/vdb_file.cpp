@@ -4,7 +4,7 @@
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/Compression.h>
-#include <openvdb/io/File.h>
+#include <openvdb/io/Stream.h>
 
 #include <cerrno>
 #include <cstring>
@@ -83,14 +83,20 @@ openvdb::GridPtrVec readVdb(const fs::path& path) {
     if (fs::file_size(path, ignored) == 0) failInput(path, "the file is empty");
     if (!std::ifstream(path)) failInput(path, "it cannot be opened for reading");
     try {
-        openvdb::io::File reader(path.string());
+        // A stream that throws stops the reader at the end of a file that was cut short; its own
+        // would go on with whatever is in memory.
+        std::ifstream stream(path, std::ios::binary);
+        stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
         // Without delayed loading, so that damage is found now and not in the middle of the work.
-        reader.open(/*delayLoad=*/false);
-        const openvdb::GridPtrVecPtr grids = reader.getGrids();
-        reader.close();
-        return *grids;
+        openvdb::io::Stream reader(stream, /*delayLoad=*/false);
+        return *reader.getGrids();
+    } catch (const std::ios::failure&) {
+        failInput(path, "it is not a whole VDB file: it ends too early");
     } catch (const std::exception& error) {
-        failInput(path, std::string("it is not a readable VDB file (") + error.what() + ")");
+        // A damaged file can put any number of bytes into OpenVDB's message.
+        constexpr std::size_t kLongest = 200;
+        failInput(path, "it is not a readable VDB file (" +
+                            std::string(error.what()).substr(0, kLongest) + ")");
     }
 }
 

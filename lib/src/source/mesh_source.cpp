@@ -120,12 +120,17 @@ void MeshSource::sampleElement(std::size_t i, const SamplingRegion& region,
                                std::vector<SurfaceSample>& samples) const {
     requireUsefulLength(quadrature.triangleEdge.back(), "triangle edge");
     const openvdb::Vec3I& t = mMesh.triangles[i];
-    const std::array<Vec3d, 3> corner = {mMesh.points[t[0]] / region.voxelSize,
-                                         mMesh.points[t[1]] / region.voxelSize,
-                                         mMesh.points[t[2]] / region.voxelSize};
+    std::array<Vec3d, 3> corner = {mMesh.points[t[0]] / region.voxelSize,
+                                   mMesh.points[t[1]] / region.voxelSize,
+                                   mMesh.points[t[2]] / region.voxelSize};
+    // Work relative to a whole voxel at the triangle, so that rounding does not depend on where
+    // in the world it lies: shifted by whole voxels, it gives the same samples to the last bit.
+    const Vec3d base(std::floor(corner[0][0]), std::floor(corner[0][1]), std::floor(corner[0][2]));
+    for (Vec3d& c : corner) c -= base;
+    const SamplingRegion local{region.voxelSize, region.origin - base, region.extent};
     const Vec3d areaVector = 0.5 * (corner[1] - corner[0]).cross(corner[2] - corner[0]);
     if (areaVector.lengthSqr() == 0.0) return;
-    sampleTriangle(corner, areaVector, 0, {quadrature, RegionClip(region), samples});
+    sampleTriangle(corner, areaVector, 0, {quadrature, RegionClip(local), samples});
 }
 
 }  // namespace bandvox

@@ -78,15 +78,17 @@ SpreadingKernel::SpreadingKernel(int width, double beta)
 
 double SpreadingKernel::operator()(double x) const {
     const double u = 2 * x / mWidth;
-    if (std::abs(u) >= 1) return 0;
+    if (std::abs(u) > 1) return 0;
     return mScale * std::cyl_bessel_i(0.0, mBeta * std::sqrt(1 - u * u));
 }
 
 double SpreadingKernel::derivative(double x) const {
     const double u = 2 * x / mWidth;
-    if (std::abs(u) >= 1) return 0;
-    const double root = std::sqrt(1 - u * u);
-    return -mScale * mBeta * std::cyl_bessel_i(1.0, mBeta * root) * u / root * 2 / mWidth;
+    if (std::abs(u) > 1) return 0;
+    // I_1(z) / z, which is 1/2 at the kernel's end.
+    const double z = mBeta * std::sqrt(1 - u * u);
+    const double ratio = z < 1e-6 ? 0.5 : std::cyl_bessel_i(1.0, z) / z;
+    return -mScale * mBeta * mBeta * ratio * u * 2 / mWidth;
 }
 
 double SpreadingKernel::transform(double k) const {

@@ -19,9 +19,9 @@ struct SurfaceSample {
 
 /// The part of space for which a surface is sampled, and the lattice it is sampled for.
 struct SamplingRegion {
-    double voxelSize = 1;    ///< world units
-    openvdb::Vec3d origin;   ///< corner, in voxels: world position / voxelSize
-    openvdb::Vec3d extent;   ///< size along each axis, voxels
+    double voxelSize = 1;   ///< world units
+    openvdb::Vec3d origin;  ///< corner, in voxels: world position / voxelSize
+    openvdb::Vec3d extent;  ///< size along each axis, voxels
 };
 
 /// A closed oriented surface that bounds a solid, as a list of elements (triangles, patches).

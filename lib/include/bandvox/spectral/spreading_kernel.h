@@ -8,7 +8,7 @@ namespace bandvox {
 
 /// The compact kernel ψ that carries weights between arbitrary places and the lattice: the
 /// Kaiser-Bessel window's partner with a closed transform,
-///     ψ(x) = I_0(β √(1 - (2x/w)²)) · c  for |x| < w/2, else 0,
+///     ψ(x) = I_0(β √(1 - (2x/w)²)) · c  for |x| ≤ w/2, else 0,
 ///     ψ̂(k) = sinh(√(β² - (πwk)²)) / √(β² - (πwk)²) · β / sinh β,
 /// scaled so that ψ̂(0) = 1.
 ///

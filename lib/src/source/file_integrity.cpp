@@ -1,0 +1,70 @@
+#include "source/file_integrity.h"
+
+#include <bandvox/core/error.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+namespace bandvox {
+namespace {
+
+std::uint32_t littleEndian32(const std::string& bytes, std::size_t offset) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        value |= std::uint32_t(static_cast<unsigned char>(bytes[offset + i])) << (8 * i);
+    }
+    return value;
+}
+
+}  // namespace
+
+void FileContents::fail(const std::string& what) const {
+    throw Error(ErrorKind::Input, "\"" + path.string() + "\" " + what);
+}
+
+FileContents readFile(const std::filesystem::path& path) {
+    FileContents file{path, {}};
+    std::ifstream stream(path, std::ios::binary | std::ios::ate);
+    if (!stream) file.fail(std::string("cannot be opened: ") + std::strerror(errno));
+    file.bytes.resize(static_cast<std::size_t>(stream.tellg()));
+    stream.seekg(0);
+    stream.read(file.bytes.data(), static_cast<std::streamsize>(file.bytes.size()));
+    if (!stream) file.fail(std::string("cannot be read: ") + std::strerror(errno));
+    return file;
+}
+
+void checkGlb(const FileContents& file) {
+    constexpr std::size_t kHeader = 12;
+    constexpr std::size_t kChunkHeader = 8;
+    const std::string& bytes = file.bytes;
+    if (bytes.size() < kHeader || !bytes.starts_with("glTF")) {
+        file.fail("does not begin with the header of binary glTF");
+    }
+    const std::size_t length = littleEndian32(bytes, 8);
+    if (length != bytes.size()) {
+        file.fail("has " + std::to_string(bytes.size()) + " bytes; its header says " +
+                  std::to_string(length));
+    }
+    for (std::size_t offset = kHeader; offset < length;) {
+        if (offset + kChunkHeader > length ||
+            littleEndian32(bytes, offset) > length - offset - kChunkHeader) {
+            file.fail("has a chunk at byte " + std::to_string(offset) +
+                      " that ends beyond the file; expected it to end within");
+        }
+        offset += kChunkHeader + littleEndian32(bytes, offset);
+    }
+}
+
+std::vector<std::string> checkMeshFile(const std::filesystem::path& path,
+                                       std::string_view extension) {
+    std::vector<std::string> warnings;
+    if (extension == ".obj") checkObj(readFile(path), warnings);
+    if (extension == ".off") checkOff(readFile(path), warnings);
+    if (extension == ".ply") checkPly(readFile(path), warnings);
+    if (extension == ".stl") checkStl(readFile(path));
+    if (extension == ".glb") checkGlb(readFile(path));
+    return warnings;
+}
+
+}  // namespace bandvox

@@ -1,0 +1,78 @@
+#include <bandvox/core/error.h>
+#include <bandvox/core/memory.h>
+#include <bandvox/core/parallel.h>
+#include <bandvox/core/progress.h>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace bandvox {
+namespace {
+
+TEST(ParallelFor, CallsEachIndexOnce) {
+    for (const int count : {0, 1, 2, 7, 1000}) {
+        std::vector<int> calls(count, 0);
+        parallelFor(count, [&](std::int64_t i) { ++calls[i]; });
+        for (const int c : calls) EXPECT_EQ(c, 1);
+    }
+}
+
+TEST(ParallelFor, PassesExceptionsOn) {
+    EXPECT_THROW(parallelFor(100,
+                             [](std::int64_t i) {
+                                 if (i == 31) throw std::runtime_error("here");
+                             }),
+                 std::runtime_error);
+}
+
+TEST(ParallelFor, StaysWithinTheLimit) {
+    const ThreadLimit limit(1);
+    EXPECT_EQ(threadCount(), 1);
+    std::set<std::thread::id> threads;
+    parallelFor(200, [&](std::int64_t) { threads.insert(std::this_thread::get_id()); });
+    EXPECT_EQ(threads.size(), 1U);
+}
+
+TEST(Progress, InterruptionIsAnError) {
+    class Stopped : public Progress {
+      public:
+        bool interrupted() const override { return true; }
+    } stopped;
+    EXPECT_NO_THROW(silentProgress().throwIfInterrupted());
+    try {
+        stopped.throwIfInterrupted();
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.exitStatus(), 130);
+    }
+}
+
+TEST(Memory, NumbersMakeSense) {
+    EXPECT_GT(availableMemory(), 1 << 20);
+    const std::int64_t before = peakMemory();
+    EXPECT_GT(before, 1 << 20);
+    std::vector<char> block(64 << 20, 1);
+    EXPECT_GT(peakMemory() + block[12345], before + (32 << 20));
+}
+
+TEST(Memory, MoreThanThereIsIsRefusedWithBothNumbers) {
+    EXPECT_NO_THROW(requireMemory(1024, "a kilobyte"));
+    try {
+        requireMemory(1e18, "the moon");
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::Memory);
+        const std::string text = error.what();
+        EXPECT_NE(text.find("the moon would need about 1e+09 GB"), std::string::npos) << text;
+        EXPECT_NE(text.find("is available"), std::string::npos) << text;
+    }
+}
+
+}  // namespace
+}  // namespace bandvox

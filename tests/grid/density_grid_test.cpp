@@ -1,0 +1,149 @@
+#include <bandvox/core/error.h>
+#include <bandvox/grid/density_grid.h>
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+namespace bandvox {
+namespace {
+
+namespace fs = std::filesystem;
+using openvdb::Coord;
+
+// A grid with a tile, leaves, and values that half precision cannot hold.
+openvdb::FloatGrid::Ptr sampleGrid() {
+    auto grid = openvdb::FloatGrid::create(0.0F);
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(0.5));
+    grid->setName("density");
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    grid->tree().addTile(1, Coord(64), 1.0F, true);
+    for (int i = 0; i < 20; ++i) grid->tree().setValue(Coord(i, 2 * i, -i), 0.1F + 0.01F * i);
+    return grid;
+}
+
+class DensityGridFile : public testing::Test {
+  protected:
+    fs::path path = fs::path(testing::TempDir()) /
+                    (std::string("bandvox_grid_") +
+                     testing::UnitTest::GetInstance()->current_test_info()->name() + ".vdb");
+    void TearDown() override { fs::remove(path); }
+
+    ErrorKind kindOfReadError() const {
+        try {
+            readVdb(path);
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos);
+            return error.kind();
+        }
+        ADD_FAILURE() << "nothing was thrown";
+        return ErrorKind::Runtime;
+    }
+};
+
+TEST(DensityMetadata, ComesBackAsItWasSet) {
+    DensityMetadata metadata;
+    metadata.version = "1.2.3";
+    metadata.source = "bunny.obj";
+    metadata.order = 4;
+    metadata.cutoff = 0.2;
+    metadata.iso = 0.45;
+    metadata.tolerance = 1e-4;
+    metadata.closureError = 2e-5;
+    metadata.sourceVolume = 7.5;
+    metadata.gridVolume = 7.4999;
+    metadata.holesCapped = 5;
+    metadata.clamped = true;
+    const openvdb::FloatGrid::Ptr grid = sampleGrid();
+    EXPECT_FALSE(densityMetadata(*grid));
+    setDensityMetadata(*grid, DensityMetadata{});
+    setDensityMetadata(*grid, metadata);
+    const std::optional<DensityMetadata> found = densityMetadata(*grid);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->version, metadata.version);
+    EXPECT_EQ(found->source, metadata.source);
+    EXPECT_EQ(found->order, metadata.order);
+    EXPECT_EQ(found->cutoff, metadata.cutoff);
+    EXPECT_EQ(found->iso, metadata.iso);
+    EXPECT_EQ(found->tolerance, metadata.tolerance);
+    EXPECT_EQ(found->closureError, metadata.closureError);
+    EXPECT_EQ(found->sourceVolume, metadata.sourceVolume);
+    EXPECT_EQ(found->gridVolume, metadata.gridVolume);
+    EXPECT_EQ(found->holesCapped, metadata.holesCapped);
+    EXPECT_EQ(found->clamped, metadata.clamped);
+}
+
+TEST(DensityIntegral, CountsVoxelsAndTilesInWorldUnits) {
+    double sum = 512;
+    for (int i = 0; i < 20; ++i) sum += 0.1 + 0.01 * i;
+    EXPECT_NEAR(densityIntegral(*sampleGrid()), sum * 0.125, 1e-5);
+    EXPECT_EQ(densityIntegral(*openvdb::FloatGrid::create(0.0F)), 0);
+}
+
+TEST_F(DensityGridFile, RoundTripKeepsEverything) {
+    const openvdb::FloatGrid::Ptr grid = sampleGrid();
+    setDensityMetadata(*grid, DensityMetadata{.version = "9"});
+    using Compression = VdbWriteOptions::Compression;
+    for (const Compression compression :
+         {Compression::Blosc, Compression::Zip, Compression::None}) {
+        writeVdb(path, {grid}, {.compression = compression});
+        const openvdb::GridPtrVec grids = readVdb(path);
+        ASSERT_EQ(grids.size(), 1U);
+        const auto read = openvdb::gridPtrCast<openvdb::FloatGrid>(grids[0]);
+        ASSERT_TRUE(read);
+        EXPECT_EQ(read->getName(), "density");
+        EXPECT_EQ(read->getGridClass(), openvdb::GRID_FOG_VOLUME);
+        EXPECT_EQ(densityMetadata(*read)->version, "9");
+        EXPECT_EQ(read->transform(), grid->transform());
+        EXPECT_TRUE(read->tree().hasSameTopology(grid->tree()));
+        for (auto value = grid->cbeginValueOn(); value; ++value) {
+            EXPECT_EQ(read->tree().getValue(value.getCoord()), *value);
+        }
+    }
+}
+
+TEST_F(DensityGridFile, HalfIsHalfAndLeavesTheGridAlone) {
+    const openvdb::FloatGrid::Ptr grid = sampleGrid();
+    writeVdb(path, {grid}, {.half = true});
+    EXPECT_FALSE(grid->saveFloatAsHalf());
+    const auto read = openvdb::gridPtrCast<openvdb::FloatGrid>(readVdb(path).at(0));
+    const Coord place(3, 6, -3);
+    EXPECT_NE(read->tree().getValue(place), grid->tree().getValue(place));
+    EXPECT_NEAR(read->tree().getValue(place), grid->tree().getValue(place), 1e-4);
+}
+
+TEST_F(DensityGridFile, PlaceThatCannotBeWrittenIsAnError) {
+    try {
+        writeVdb("/proc/bandvox.vdb", {sampleGrid()});
+        FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::Runtime);
+    }
+}
+
+TEST_F(DensityGridFile, BadFilesAreRefused) {
+    fs::remove(path);
+    EXPECT_EQ(kindOfReadError(), ErrorKind::Input);  // missing
+    std::ofstream(path).close();
+    EXPECT_EQ(kindOfReadError(), ErrorKind::Input);  // empty
+    std::ofstream(path) << "this is not a volume, however long it goes on and on and on";
+    EXPECT_EQ(kindOfReadError(), ErrorKind::Input);
+    fs::remove(path);
+    fs::create_directory(path);
+    EXPECT_EQ(kindOfReadError(), ErrorKind::Input);  // a folder
+}
+
+// A file that was cut off anywhere is refused, or at least never a crash.
+TEST_F(DensityGridFile, TruncatedFilesAreRefused) {
+    writeVdb(path, {sampleGrid()});
+    const auto size = static_cast<int>(fs::file_size(path));
+    for (int cut = 1; cut < size; cut += 97) {
+        writeVdb(path, {sampleGrid()});
+        fs::resize_file(path, cut);
+        EXPECT_EQ(kindOfReadError(), ErrorKind::Input) << cut << " of " << size;
+    }
+}
+
+}  // namespace
+}  // namespace bandvox
