@@ -298,7 +298,7 @@ TEST(BrickReconstruction, ReadsAnEmptyGridAndPlacesOutOfTheWorld) {
 TEST(BrickReconstruction, DoesNotDependOnThreadsOrOnTheCache) {
     const GaussianBall truth(0.16, Vec3d(3.7, 1.2, -2.9), 20.6);
     const auto grid = truth.sample(openvdb::CoordBBox(Coord(-30), Coord(30)));
-    constexpr int kTasks = 64, kPlaces = 200;
+    constexpr int kTasks = 16, kPlaces = 60;
     const auto readAll = [&](int threads, std::size_t cacheBytes) {
         const bandvox::ThreadLimit limit(threads);
         BrickReconstructionOptions options;
@@ -307,7 +307,7 @@ TEST(BrickReconstruction, DoesNotDependOnThreadsOrOnTheCache) {
         std::vector<double> values(kTasks * kPlaces);
         bandvox::parallelFor(kTasks, [&](std::int64_t task) {
             std::mt19937 random(static_cast<unsigned>(task));
-            std::uniform_real_distribution<double> place(-90, 90);
+            std::uniform_real_distribution<double> place(-60, 60);
             const auto probe = reconstruction->probe();
             for (int i = 0; i < kPlaces; ++i) {
                 const Vec3d x(place(random), place(random), place(random));
