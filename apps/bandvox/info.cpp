@@ -43,7 +43,7 @@ const CommandTable& infoTable() {
 }
 
 void runInfo(const CommandLine& line) {
-    const std::string input = line.positional(0);
+    const std::string& input = line.positional(0);
     requireVdb(input);
     CommandRun run(line);
 

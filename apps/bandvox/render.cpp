@@ -99,7 +99,7 @@ openvdb::FloatGrid::Ptr chooseGrid(const openvdb::GridPtrVec& grids,
     openvdb::FloatGrid::Ptr only;
     std::size_t floats = 0;
     for (const auto& grid : grids) {
-        const auto floatGrid = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+        auto floatGrid = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
         if (!floatGrid) continue;
         if (grid->getName() == wanted) return floatGrid;
         only = floatGrid;
