@@ -54,7 +54,7 @@ ConvertRequest parseConvert(const CommandLine& line) {
     density.voxelSize = line.number("voxel-size", {.low = 0, .lowOpen = true}, density.voxelSize);
     density.filter.cutoff =
         line.number("cutoff", {.low = 0.01, .high = 0.5}, density.filter.cutoff);
-    density.filter.order = line.number("order", {.low = 0.5, .high = 64}, density.filter.order);
+    density.filter.order = line.number("order", {.low = 1, .high = 64}, density.filter.order);
     density.tolerance = line.number("tolerance", {.low = 1e-6, .high = 0.05}, density.tolerance);
     density.tile = line.wholeNumber("tile", 0, 1024, density.tile);
     density.iso =
@@ -206,7 +206,7 @@ const CommandTable& convertTable() {
                  "Cutoff k_c of the filter exp(-(k/k_c)^n), in cycles per voxel, 0.01 to 0.5.",
                  filter},
                 {"order", 0, "N", formatNumber(density.filter.order),
-                 "Order n of the filter, 0.5 to 64. 2 never rings; more keeps more detail and "
+                 "Order n of the filter, 1 to 64. 2 never rings; more keeps more detail and "
                  "overshoots at flat faces.",
                  filter},
                 {"tolerance", 0, "E", formatNumber(density.tolerance),

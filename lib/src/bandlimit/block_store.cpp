@@ -28,11 +28,11 @@ bool isConstant(const DensityLeaf& leaf, float threshold, float& value) {
 }
 
 BlockStore::BlockStore(const openvdb::CoordBBox& region, double threshold)
-    : mRegion(region),
-      mThreshold(static_cast<float>(threshold)),
+    : mThreshold(static_cast<float>(threshold)),
       mFirstBlock(blockOf(region.min())),
       mBlockCount(blockOf(region.max()) - mFirstBlock + openvdb::Coord(1)),
-      mLeaves(static_cast<std::size_t>(mBlockCount.x()) * mBlockCount.y() * mBlockCount.z()) {}
+      mLeaves(static_cast<std::size_t>(mBlockCount.x()) * mBlockCount.y() * mBlockCount.z()),
+      mFilled(mLeaves.size()) {}
 
 std::size_t BlockStore::indexOf(const openvdb::Coord& voxel) const {
     const openvdb::Coord block = blockOf(voxel) - mFirstBlock;
@@ -47,6 +47,7 @@ DensityLeaf& BlockStore::leafAt(const openvdb::Coord& voxel) {
 }
 
 void BlockStore::fill(const openvdb::CoordBBox& box, float value) {
+    mFilled[indexOf(box.min())] += static_cast<std::uint16_t>(box.volume());
     if (value == 0) return;
     if (isWholeBlock(box)) {
         mBlocks.constant.push_back({box.min(), value});
@@ -60,6 +61,7 @@ void BlockStore::fill(const openvdb::CoordBBox& box, float value) {
 
 void BlockStore::copy(const openvdb::CoordBBox& box, const float* values, std::ptrdiff_t xStride,
                       std::ptrdiff_t yStride) {
+    mFilled[indexOf(box.min())] += static_cast<std::uint16_t>(box.volume());
     float* to = leafAt(box.min()).buffer().data() + DensityLeaf::coordToOffset(box.min());
     const openvdb::Coord size = box.dim();
     for (int x = 0; x < size.x(); ++x) {
@@ -75,23 +77,19 @@ void BlockStore::finishBefore(int x) {
     const std::size_t slab = static_cast<std::size_t>(mBlockCount.y()) * mBlockCount.z();
     for (; mFinished < end; ++mFinished) {
         for (std::size_t i = mFinished * slab; i < (mFinished + 1) * slab; ++i) {
-            if (mLeaves[i]) finish(std::move(mLeaves[i]));
+            if (mLeaves[i]) finish(std::move(mLeaves[i]), mFilled[i] == DensityLeaf::SIZE);
         }
     }
 }
 
-void BlockStore::finish(std::unique_ptr<DensityLeaf> leaf) {
-    const openvdb::CoordBBox box = leaf->getNodeBoundingBox();
-    const bool complete = box.min().y() >= mRegion.min().y() &&
-                          box.max().y() <= mRegion.max().y() &&
-                          box.min().z() >= mRegion.min().z() && box.max().z() <= mRegion.max().z();
+void BlockStore::finish(std::unique_ptr<DensityLeaf> leaf, bool isComplete) {
     float value = 0;
     const bool isFlat = isConstant(*leaf, mThreshold, value);
     if (isFlat && value == 0) return;  // in a border block, what the others add decides
-    if (!complete) {
+    if (!isComplete) {
         mBlocks.border.push_back(std::move(leaf));
     } else if (isFlat) {
-        mBlocks.constant.push_back({box.min(), value});
+        mBlocks.constant.push_back({leaf->origin(), value});
     } else {
         mBlocks.inner.push_back(std::move(leaf));
     }

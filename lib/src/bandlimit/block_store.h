@@ -2,6 +2,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -18,14 +19,17 @@ struct ConstantBlock {
 /// The part of a grid that one column of tiles has made.
 struct ColumnBlocks {
     std::vector<std::unique_ptr<DensityLeaf>> inner;   ///< complete
-    std::vector<std::unique_ptr<DensityLeaf>> border;  ///< may go on in other columns
+    std::vector<std::unique_ptr<DensityLeaf>> border;  ///< go on in other tiles; 0 there
     std::vector<ConstantBlock> constant;               ///< complete
+    /// Of each tile along x the one value of all its voxels, which no block above holds, or NaN if
+    /// it has several. Empty if all are 0.
+    std::vector<float> farValues;
 };
 
 /// Leaf nodes of one column of tiles while they are made.
 ///
 /// Tiles do not respect the borders of leaf nodes, so a block may be filled in several pieces,
-/// and blocks at the column's border are completed by its neighbours (see assembleGrid).
+/// and what a column does not fill of a block is completed later (see assembleGrid).
 class BlockStore {
   public:
     /// `region`: the column's voxels. `threshold`: values nearer to a whole number than this
@@ -50,14 +54,14 @@ class BlockStore {
   private:
     DensityLeaf& leafAt(const openvdb::Coord& voxel);
     std::size_t indexOf(const openvdb::Coord& voxel) const;
-    void finish(std::unique_ptr<DensityLeaf> leaf);
+    void finish(std::unique_ptr<DensityLeaf> leaf, bool isComplete);
 
-    openvdb::CoordBBox mRegion;
     float mThreshold;
     openvdb::Coord mFirstBlock;  // block coordinates: voxel / 8
     openvdb::Coord mBlockCount;
     int mFinished = 0;  // slabs of blocks along x
     std::vector<std::unique_ptr<DensityLeaf>> mLeaves;
+    std::vector<std::uint16_t> mFilled;  // voxels set of each block
     ColumnBlocks mBlocks;
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace bandvox {
 
@@ -62,6 +64,7 @@ ColumnBlocks DensityColumn::fill(int y, int z, std::span<const std::uint32_t> el
     const openvdb::Coord high = mLayout.tileOrigin({mLayout.count.x(), y + 1, z + 1});
     BlockStore store(openvdb::CoordBBox(low, high - openvdb::Coord(1)), mPlan.threshold);
     const ElementLists lists = sortByTile(elements);
+    std::vector<float> farValues(mLayout.count.x(), std::numeric_limits<float>::quiet_NaN());
     std::fill(mSum.begin(), mSum.end(), 0.0);
     for (int x = 0; x < mLayout.count.x(); ++x) {
         progress.throwIfInterrupted();
@@ -69,7 +72,7 @@ ColumnBlocks DensityColumn::fill(int y, int z, std::span<const std::uint32_t> el
         const openvdb::Coord origin = mLayout.tileOrigin(tile);
         if (lists[x].empty() || !sampleTile(tile, lists[x], statistics)) {
             snapAll(statistics);
-            storeFarTile(origin, store);
+            farValues[x] = static_cast<float>(mSum[0]);
         } else {
             storeTile(origin, store);
         }
@@ -79,7 +82,9 @@ ColumnBlocks DensityColumn::fill(int y, int z, std::span<const std::uint32_t> el
     snapAll(statistics);
     statistics.closureError = std::max(statistics.closureError, std::abs(mSum[0]));
     store.finishBefore(high.x() + DensityLeaf::DIM);
-    return store.take();
+    ColumnBlocks blocks = store.take();
+    blocks.farValues = std::move(farValues);
+    return blocks;
 }
 
 DensityColumn::ElementLists DensityColumn::sortByTile(
@@ -211,13 +216,6 @@ void DensityColumn::storeTile(const openvdb::Coord& tileOrigin, BlockStore& stor
             store.fill(part, *first);
         }
     });
-}
-
-void DensityColumn::storeFarTile(const openvdb::Coord& tileOrigin, BlockStore& store) const {
-    const auto value = static_cast<float>(mSum[0]);
-    if (value == 0) return;
-    forEachBlock(openvdb::CoordBBox::createCube(tileOrigin, mPlan.interior),
-                 [&](const openvdb::CoordBBox& part) { store.fill(part, value); });
 }
 
 }  // namespace bandvox

@@ -48,7 +48,6 @@ class DensityColumn {
     void snapCell(int y, int z, ColumnStatistics& statistics);
     void snapAll(ColumnStatistics& statistics);
     void storeTile(const openvdb::Coord& tileOrigin, BlockStore& store) const;
-    void storeFarTile(const openvdb::Coord& tileOrigin, BlockStore& store) const;
 
     const BoundarySource& mSource;
     const TilePlan& mPlan;

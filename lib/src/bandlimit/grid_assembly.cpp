@@ -1,5 +1,7 @@
 #include "bandlimit/grid_assembly.h"
 
+#include "bandlimit/far_tiles.h"
+
 #include <bandvox/core/parallel.h>
 
 #include <openvdb/tools/Prune.h>
@@ -24,9 +26,9 @@ void forEachChunk(std::size_t count, const std::function<void(std::size_t, std::
     });
 }
 
-// Adds up the pieces of each block: every voxel was set by one piece and is 0 in the others.
-// What becomes constant goes to `constant`, the rest to `whole`.
-void joinPieces(LeafList pieces, float threshold, LeafList& whole,
+// Adds up the pieces of each block: every voxel was set by one piece and is 0 in the others, or
+// lies in a far tile. What becomes constant goes to `constant`, the rest to `whole`.
+void joinPieces(LeafList pieces, const FarTiles& far, float threshold, LeafList& whole,
                 std::vector<ConstantBlock>& constant) {
     std::stable_sort(pieces.begin(), pieces.end(),
                      [](const auto& a, const auto& b) { return a->origin() < b->origin(); });
@@ -38,6 +40,7 @@ void joinPieces(LeafList pieces, float threshold, LeafList& whole,
             for (openvdb::Index v = 0; v < DensityLeaf::SIZE; ++v) sum[v] += piece[v];
             pieces[i].reset();
         }
+        far.complete(*leaf);
         float value = 0;
         if (!isConstant(*leaf, threshold, value)) {
             whole.push_back(std::move(leaf));
@@ -63,9 +66,38 @@ bool finishLeaf(DensityLeaf& leaf, const AssemblyOptions& options) {
     return !active.isOff();
 }
 
+// Makes tiles of what lies in far tiles only: cubes of 128³ voxels, and blocks of 8³ elsewhere.
+void addFarTiles(const FarTiles& far, bool clamp, openvdb::FloatTree& tree) {
+    using Node = openvdb::FloatTree::RootNodeType::ChildNodeType::ChildNodeType;
+    constexpr int kNode = Node::DIM;
+    const openvdb::CoordBBox box = far.voxels();
+    const auto add = [&](openvdb::Index level, const openvdb::Coord& origin, float value) {
+        if (clamp) value = std::clamp(value, 0.0F, 1.0F);
+        if (value != 0) tree.addTile(level, origin, value, /*active=*/true);
+    };
+    const auto forEachCube = [](const openvdb::CoordBBox& within, int side, const auto& visit) {
+        const openvdb::Coord low = within.min() & ~(side - 1);
+        for (int x = low.x(); x <= within.max().x(); x += side) {
+            for (int y = low.y(); y <= within.max().y(); y += side) {
+                for (int z = low.z(); z <= within.max().z(); z += side) {
+                    visit(openvdb::CoordBBox::createCube(openvdb::Coord(x, y, z), side));
+                }
+            }
+        }
+    };
+    forEachCube(box, kNode, [&](const openvdb::CoordBBox& cube) {
+        if (const auto value = far.valueIn(cube)) return add(2, cube.min(), *value);
+        openvdb::CoordBBox part = cube;
+        part.intersect(box);
+        forEachCube(part, DensityLeaf::DIM, [&](const openvdb::CoordBBox& block) {
+            if (const auto value = far.valueIn(block)) add(1, block.min(), *value);
+        });
+    });
+}
+
 }  // namespace
 
-openvdb::FloatGrid::Ptr assembleGrid(std::vector<ColumnBlocks>& columns,
+openvdb::FloatGrid::Ptr assembleGrid(std::vector<ColumnBlocks>& columns, const TileLayout& layout,
                                      const AssemblyOptions& options) {
     // Gather what the columns made.
     LeafList leaves, pieces;
@@ -75,8 +107,9 @@ openvdb::FloatGrid::Ptr assembleGrid(std::vector<ColumnBlocks>& columns,
         std::move(column.border.begin(), column.border.end(), std::back_inserter(pieces));
         constant.insert(constant.end(), column.constant.begin(), column.constant.end());
     }
+    const FarTiles far(columns, layout);
     columns.clear();
-    joinPieces(std::move(pieces), static_cast<float>(options.threshold), leaves, constant);
+    joinPieces(std::move(pieces), far, static_cast<float>(options.threshold), leaves, constant);
 
     forEachChunk(leaves.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -87,6 +120,7 @@ openvdb::FloatGrid::Ptr assembleGrid(std::vector<ColumnBlocks>& columns,
     // Hand the leaves to the tree in the order of their place, so that neighbours share a path.
     auto grid = openvdb::FloatGrid::create(0.0F);
     openvdb::FloatTree& tree = grid->tree();
+    addFarTiles(far, options.clamp, tree);
     for (const ConstantBlock& block : constant) {
         const float value = options.clamp ? std::clamp(block.value, 0.0F, 1.0F) : block.value;
         if (value != 0) tree.addTile(1, block.origin, value, /*active=*/true);
@@ -95,7 +129,7 @@ openvdb::FloatGrid::Ptr assembleGrid(std::vector<ColumnBlocks>& columns,
         if (leaf) tree.addLeaf(leaf.release());
     }
     openvdb::tools::pruneTiles(tree, 0.0F, /*threaded=*/false);
-    grid->setTransform(openvdb::math::Transform::createLinearTransform(options.voxelSize));
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(layout.voxelSize));
     return grid;
 }
 

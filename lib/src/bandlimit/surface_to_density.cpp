@@ -3,6 +3,7 @@
 #include "bandlimit/grid_assembly.h"
 #include "bandlimit/tile_filter.h"
 #include "bandlimit/tile_plan.h"
+#include "core/words.h"
 
 #include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/core/error.h>
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <mutex>
 
@@ -24,12 +24,10 @@ constexpr double kLowestTolerance = 1e-6;
 constexpr double kHighestTolerance = 0.05;
 constexpr int kHighestResolution = 1 << 20;
 constexpr int kLargestTile = 512;
+constexpr double kSmallestVoxel = 1e-14;  // world units; a scale below 1e-15 is 0 to OpenVDB
 
-std::string inShort(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
-}
+// How far the integral may be from the volume, in tolerances, before it is worth a word.
+constexpr double kVolumeMargin = 10;
 
 void requireValid(const DensityOptions& options) {
     requireValid(options.filter);
@@ -56,56 +54,44 @@ void requireValid(const DensityOptions& options) {
 }
 
 double chooseVoxelSize(const BoundarySource& source, const DensityOptions& options) {
-    if (options.voxelSize > 0) return options.voxelSize;
-    const openvdb::Vec3d size = source.bounds().extents();
-    return std::max({size.x(), size.y(), size.z()}) / options.resolution;
+    double voxelSize = options.voxelSize;
+    if (voxelSize == 0) {
+        const openvdb::Vec3d size = source.bounds().extents();
+        voxelSize = std::max({size.x(), size.y(), size.z()}) / options.resolution;
+    }
+    if (voxelSize < kSmallestVoxel) {
+        throw Error(options.voxelSize > 0 ? ErrorKind::Usage : ErrorKind::Input,
+                    source.name() + ": a voxel would be " + inShort(voxelSize) +
+                        " world units, and OpenVDB's transforms take no less than " +
+                        inShort(kSmallestVoxel) + "; scale the object up");
+    }
+    return voxelSize;
 }
 
-// Bytes that the grid and the work on it will take, from the surface's area. The factors are
-// measured on meshes between 128³ and 1024³; they are meant to be a little high.
-double estimateMemory(const BoundarySource& source, const TilePlan& plan, const TileLayout& layout,
-                      const TileFilter& filter) {
+// Bytes that the grid will take, from the surface's area: its leaves, those at the columns'
+// borders twice for a while, and the inner nodes above them. A little high, by measurements on
+// meshes between 128³ and 1024³.
+double estimateGridMemory(const BoundarySource& source, double voxelSize, const TilePlan& plan) {
     constexpr double kBytesPerLeaf = 2048 + 128;
-    constexpr double kBorderShare = 1.4;  // blocks at the columns' borders exist twice for a while
-    const double area = source.area() / (layout.voxelSize * layout.voxelSize);
+    constexpr double kBorderShare = 1.4;
+    constexpr double kBytesPerNode = 36e3;
+    constexpr double kNodeFace = 128 * 128;
+    const double area = source.area() / (voxelSize * voxelSize);
     const double thickness = plan.halo + DensityLeaf::DIM;  // of the leaves along the surface
     const double leaves = area * thickness / DensityLeaf::SIZE;
+    return leaves * kBytesPerLeaf * kBorderShare + 2 * area / kNodeFace * kBytesPerNode;
+}
+
+// Bytes that the work on it takes besides.
+double estimateWorkMemory(const BoundarySource& source, const TilePlan& plan,
+                          const TileLayout& layout, const TileFilter& filter) {
     const double columns = static_cast<double>(layout.count.y()) * layout.count.z();
     const double perThread = 4.0 * static_cast<double>(filter.bufferSize()) +
                              4.0 * std::pow(plan.interior, 3) +
                              sizeof(SurfaceSample) * 8.0 * plan.side * plan.side;
-    return leaves * kBytesPerLeaf * kBorderShare + columns * 2 * sizeof(ColumnBlocks) +
+    return columns * (2 * sizeof(ColumnBlocks) + sizeof(float) * layout.count.x()) +
            12.0 * static_cast<double>(source.elementCount()) + threadCount() * perThread;
 }
-
-// Lends each running task a worker of its own; there are as many as tasks at a time.
-template <typename Worker>
-class WorkerPool {
-  public:
-    explicit WorkerPool(std::function<std::unique_ptr<Worker>()> make) : mMake(std::move(make)) {}
-
-    std::unique_ptr<Worker> take() {
-        {
-            const std::lock_guard<std::mutex> lock(mMutex);
-            if (!mIdle.empty()) {
-                std::unique_ptr<Worker> worker = std::move(mIdle.back());
-                mIdle.pop_back();
-                return worker;
-            }
-        }
-        return mMake();
-    }
-
-    void giveBack(std::unique_ptr<Worker> worker) {
-        const std::lock_guard<std::mutex> lock(mMutex);
-        mIdle.push_back(std::move(worker));
-    }
-
-  private:
-    std::function<std::unique_ptr<Worker>()> mMake;
-    std::mutex mMutex;
-    std::vector<std::unique_ptr<Worker>> mIdle;
-};
 
 // Fills all columns of tiles, in parallel.
 std::vector<ColumnBlocks> fillColumns(const BoundarySource& source, const TilePlan& plan,
@@ -158,6 +144,16 @@ bool findOverlap(const ColumnStatistics& statistics, const ExponentialFilter& fi
     return true;
 }
 
+// What lies below the storage threshold is lost, and of an object of few voxels that is much.
+void warnOfVolume(const DensityMetadata& metadata, std::vector<std::string>& warnings) {
+    const double difference = std::abs(metadata.gridVolume / metadata.sourceVolume - 1);
+    if (difference <= kVolumeMargin * metadata.tolerance) return;
+    warnings.push_back("the integral of the density differs from the volume by " +
+                       inShort(100 * difference) +
+                       " %, since the object is small in voxels; use more of them, or a smaller "
+                       "tolerance");
+}
+
 }  // namespace
 
 DensityResult surfaceToDensity(const BoundarySource& source, const DensityOptions& options,
@@ -166,10 +162,12 @@ DensityResult surfaceToDensity(const BoundarySource& source, const DensityOption
     requireValid(options);
     const double voxelSize = chooseVoxelSize(source, options);
     const TilePlan plan = makeTilePlan(options);
+    const std::string wanted = "a grid of voxels of " + inShort(voxelSize) + " world units";
+    const double gridMemory = estimateGridMemory(source, voxelSize, plan);
+    requireMemory(gridMemory, wanted.c_str());
     const TileLayout layout = layOutTiles(source.bounds(), voxelSize, plan);
     const TileFilter filter(plan);
-    requireMemory(estimateMemory(source, plan, layout, filter),
-                  ("a grid of voxels of " + inShort(voxelSize) + " world units").c_str());
+    requireMemory(gridMemory + estimateWorkMemory(source, plan, layout, filter), wanted.c_str());
 
     // Filter the tiles, and check what was measured on the way.
     DensityResult result;
@@ -185,14 +183,14 @@ DensityResult surfaceToDensity(const BoundarySource& source, const DensityOption
                         " where it should be a whole number, more than the tolerance of " +
                         inShort(options.tolerance));
     }
-    const bool clamp =
-        findOverlap(statistics, options.filter, options.tolerance, result.warnings) ||
-        options.clamp;
+    const bool isOverlapping =
+        findOverlap(statistics, options.filter, options.tolerance, result.warnings);
+    const bool clamp = isOverlapping || options.clamp;
 
     // Join the columns to one grid.
     {
         const ProgressStage stage(progress, "assembling", 0);
-        result.grid = assembleGrid(columns, {voxelSize, plan.threshold, clamp});
+        result.grid = assembleGrid(columns, layout, {plan.threshold, clamp});
     }
     progress.throwIfInterrupted();
     if (result.grid->tree().empty()) {
@@ -215,6 +213,7 @@ DensityResult surfaceToDensity(const BoundarySource& source, const DensityOption
     metadata.gridVolume = densityIntegral(*result.grid);
     metadata.clamped = clamp;
     setDensityMetadata(*result.grid, metadata);
+    if (!clamp) warnOfVolume(metadata, result.warnings);
 
     result.surfaceSamples = statistics.samples;
     result.tiles = statistics.tiles;

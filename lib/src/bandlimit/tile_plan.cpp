@@ -1,6 +1,7 @@
 #include "bandlimit/tile_plan.h"
 
 #include "bandlimit/surface_quadrature.h"
+#include "core/words.h"
 
 #include <bandvox/core/error.h>
 
@@ -79,9 +80,9 @@ TileLayout layOutTiles(const openvdb::BBoxd& bounds, double voxelSize, const Til
     for (int axis = 0; axis < 3; ++axis) {
         // Written so that a NaN fails too.
         if (!(low[axis] > -kLargestIndex && high[axis] < kLargestIndex)) {
-            throw Error(ErrorKind::Usage, "with voxels of " + std::to_string(voxelSize) +
+            throw Error(ErrorKind::Usage, "with voxels of " + inShort(voxelSize) +
                                               " world units the object reaches index " +
-                                              std::to_string(std::max(-low[axis], high[axis])) +
+                                              inShort(std::max(-low[axis], high[axis])) +
                                               ", and indices must stay below 2^30");
         }
         // The density reaches as far as the filter does; one voxel more makes the first

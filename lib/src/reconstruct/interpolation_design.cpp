@@ -1,4 +1,5 @@
 #include "reconstruct/interpolation_design.h"
+#include "core/words.h"
 
 #include <bandvox/core/error.h>
 
@@ -212,10 +213,10 @@ InterpolationDesign designInterpolation(const ExponentialFilter& filter, double 
         }
     }
     throw Error(ErrorKind::Usage,
-                "no interpolation of the lattice reaches an error of " + std::to_string(tolerance) +
+                "no interpolation of the lattice reaches an error of " + inShort(tolerance) +
                     " (best: " + std::to_string(reached) + "): a filter of order " +
-                    std::to_string(filter.order) + " and cutoff " + std::to_string(filter.cutoff) +
-                    " leaves " + std::to_string(filter.atNyquist()) + " at Nyquist");
+                    inShort(filter.order) + " and cutoff " + inShort(filter.cutoff) +
+                    " leaves " + inShort(filter.atNyquist()) + " at Nyquist");
 }
 
 }  // namespace bandvox

@@ -1,3 +1,4 @@
+#include "core/words.h"
 #include "source/file_integrity.h"
 
 #include <bandvox/core/error.h>
@@ -120,24 +121,49 @@ void checkGltfComplete(const aiScene& scene, const fs::path& path) {
                    " triangles referring to points that it does not have; expected none");
 }
 
-/// Appends a mesh under a transform.
-void appendMesh(const aiMesh& source, const Matrix& transform, const fs::path& path, Mesh& mesh) {
+/// The importer keeps coordinates in single precision, so far from the origin they are coarse.
+/// Complains if that is much of the object's size; `reach` is the largest coordinate, world units.
+void checkPrecision(const Mesh& mesh, double reach, const fs::path& path,
+                    std::vector<std::string>& warnings) {
+    constexpr double kWorthAWord = 1e-5;
+    constexpr double kTooCoarse = 1e-3;
+    openvdb::BBoxd box;
+    for (const openvdb::Vec3d& point : mesh.points) box.expand(point);
+    const openvdb::Vec3d extents = box.extents();
+    const double size = std::max({extents.x(), extents.y(), extents.z()});
+    const double step = reach * std::numeric_limits<float>::epsilon();
+    if (!(step > kWorthAWord * size)) return;
+    const std::string found = "has coordinates up to " + inShort(reach) +
+                              ", which are read in single precision, to " + inShort(step) +
+                              " units, and the object is only " + inShort(size) +
+                              " long; move it to the origin";
+    if (step > kTooCoarse * size) fail(path, found);
+    warnings.push_back("it " + found);
+}
+
+/// Appends a mesh under a transform. Returns how far its points reach from the origin of its own
+/// coordinates, along an axis, in world units.
+double appendMesh(const aiMesh& source, const Matrix& transform, const fs::path& path,
+                  Mesh& mesh) {
     constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
     if (mesh.points.size() + source.mNumVertices > kMost) {
         fail(path, "has more than " + std::to_string(kMost) + " points; expected fewer");
     }
     const auto first = static_cast<std::uint32_t>(mesh.points.size());
+    double largest = 0;
     for (unsigned i = 0; i < source.mNumVertices; ++i) {
         const aiVector3D& v = source.mVertices[i];
         const aiVector3t<double> p = transform * aiVector3t<double>(v.x, v.y, v.z);
         mesh.points.emplace_back(p.x, p.y, p.z);
+        largest = std::max<double>({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
         if (!mesh.points.back().isFinite()) {
             fail(path, "has an object under a transform that makes it infinite");
         }
     }
 
     // A reflection exchanges the sides of a face.
-    const bool reflects = transform.Determinant() < 0.0;
+    const double determinant = transform.Determinant();
+    const bool reflects = determinant < 0.0;
     for (unsigned i = 0; i < source.mNumFaces; ++i) {
         const aiFace& face = source.mFaces[i];
         if (face.mNumIndices != 3) continue;
@@ -146,23 +172,27 @@ void appendMesh(const aiMesh& source, const Matrix& transform, const fs::path& p
         if (reflects) std::swap(t[1], t[2]);
         mesh.triangles.push_back(t);
     }
+    return largest * std::cbrt(std::abs(determinant));
 }
 
 /// Appends every mesh of every node, each as often as nodes refer to it.
 void appendNodes(const aiScene& scene, const fs::path& path, MeshFile& file) {
+    double reach = 0;
     std::vector<std::pair<const aiNode*, Matrix>> pending = {{scene.mRootNode, Matrix()}};
     while (!pending.empty()) {
         const auto [node, parent] = pending.back();
         pending.pop_back();
         const Matrix transform = parent * static_cast<Matrix>(node->mTransformation);
         for (unsigned i = 0; i < node->mNumMeshes; ++i) {
-            appendMesh(*scene.mMeshes[node->mMeshes[i]], transform, path, file.mesh);
+            reach = std::max(reach, appendMesh(*scene.mMeshes[node->mMeshes[i]], transform, path,
+                                               file.mesh));
             ++file.objects;
         }
         for (unsigned i = node->mNumChildren; i-- > 0;) {
             pending.emplace_back(node->mChildren[i], transform);
         }
     }
+    checkPrecision(file.mesh, reach, path, file.warnings);
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include "core/words.h"
+
 #include <bandvox/core/error.h>
 #include <bandvox/spectral/exponential_filter.h>
 
@@ -5,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 namespace bandvox {
 
@@ -23,6 +26,37 @@ double highestFrequency(const ExponentialFilter& filter) {
     return filter.cutoff * std::pow(39.1, 1 / filter.order);
 }
 
+// The filtered half-space, for many distances: the filter is tabulated once.
+class HalfSpace {
+  public:
+    explicit HalfSpace(const ExponentialFilter& filter) {
+        const double highest = highestFrequency(filter);
+        for (double k = kFrequencyStep / 2; k < highest; k += kFrequencyStep) {
+            mWeights.push_back(filter(k) / (kPi * k) * kFrequencyStep);
+        }
+    }
+
+    double density(double distance) const {
+        // sin(2πkr) for k in equal steps, by turning a number of length 1.
+        const double angle = 2 * kPi * kFrequencyStep * distance;
+        const double c = std::cos(angle);
+        const double s = std::sin(angle);
+        double re = std::cos(angle / 2);
+        double im = std::sin(angle / 2);
+        double sum = 0;
+        for (const double weight : mWeights) {
+            sum += weight * im;
+            const double next = re * c - im * s;
+            im = re * s + im * c;
+            re = next;
+        }
+        return 0.5 - sum;
+    }
+
+  private:
+    std::vector<double> mWeights;  // H(k) dk / (πk)
+};
+
 }  // namespace
 
 double ExponentialFilter::operator()(double k) const {
@@ -30,39 +64,35 @@ double ExponentialFilter::operator()(double k) const {
 }
 
 void requireValid(const ExponentialFilter& filter) {
-    if (!(filter.order >= 0.5 && filter.order <= 64)) {
-        throw Error(ErrorKind::Usage, "the filter's order is " + std::to_string(filter.order) +
-                                          "; it must be between 0.5 and 64");
+    if (!(filter.order >= 1 && filter.order <= 64)) {
+        throw Error(ErrorKind::Usage, "the filter's order is " + inShort(filter.order) +
+                                          "; it must be between 1 and 64");
     }
     if (!(filter.cutoff >= 0.01 && filter.cutoff <= 0.5)) {
-        throw Error(ErrorKind::Usage, "the filter's cutoff is " + std::to_string(filter.cutoff) +
+        throw Error(ErrorKind::Usage, "the filter's cutoff is " + inShort(filter.cutoff) +
                                           "; it must be between 0.01 and 0.5 cycles per voxel");
     }
 }
 
 double halfSpaceDensity(const ExponentialFilter& filter, double distance) {
-    const double highest = highestFrequency(filter);
-    double sum = 0;
-    for (double k = kFrequencyStep / 2; k < highest; k += kFrequencyStep) {
-        sum += filter(k) * std::sin(2 * kPi * k * distance) / (kPi * k);
-    }
-    return 0.5 - sum * kFrequencyStep;
+    return HalfSpace(filter).density(distance);
 }
 
 double filterReach(const ExponentialFilter& filter, double tolerance) {
+    const HalfSpace halfSpace(filter);
     double reach = 0;
     double searched = 32;
     // Look twice as far until the last quarter of what was searched is quiet.
     for (double r = kReachStep; r <= searched; r += kReachStep) {
-        if (std::abs(halfSpaceDensity(filter, r)) > tolerance) reach = r;
+        if (std::abs(halfSpace.density(r)) > tolerance) reach = r;
         if (r + kReachStep > searched && reach > 0.75 * searched) {
             searched *= 2;
             if (searched > kLongestReach) {
                 throw Error(ErrorKind::Usage,
-                            "a filter of order " + std::to_string(filter.order) + " and cutoff " +
-                                std::to_string(filter.cutoff) + " reaches farther than " +
-                                std::to_string(static_cast<int>(kLongestReach)) +
-                                " voxels at a tolerance of " + std::to_string(tolerance) +
+                            "a filter of order " + inShort(filter.order) + " and cutoff " +
+                                inShort(filter.cutoff) + " reaches farther than " +
+                                inShort(kLongestReach) + " voxels at a tolerance of " +
+                                inShort(tolerance) +
                                 "; raise the order, the cutoff or the tolerance");
             }
         }
@@ -71,9 +101,10 @@ double filterReach(const ExponentialFilter& filter, double tolerance) {
 }
 
 double filterOvershoot(const ExponentialFilter& filter) {
+    const HalfSpace halfSpace(filter);
     double overshoot = 0;
     for (double r = 0; r <= 32; r += kReachStep) {
-        overshoot = std::max(overshoot, -halfSpaceDensity(filter, r));
+        overshoot = std::max(overshoot, -halfSpace.density(r));
     }
     return overshoot;
 }

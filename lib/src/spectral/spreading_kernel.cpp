@@ -1,3 +1,5 @@
+#include "core/words.h"
+
 #include <bandvox/core/error.h>
 #include <bandvox/spectral/spreading_kernel.h>
 
@@ -211,9 +213,9 @@ SpreadingKernel SpreadingKernel::forFilter(const ExponentialFilter& filter, doub
     }
     throw Error(ErrorKind::Usage,
                 "no spreading kernel of up to " + std::to_string(kMaximumWidth) +
-                    " voxels reaches an error of " + std::to_string(tolerance) +
-                    " with a filter of order " + std::to_string(filter.order) + " and cutoff " +
-                    std::to_string(filter.cutoff) + " (best: " + std::to_string(best) +
+                    " voxels reaches an error of " + inShort(tolerance) +
+                    " with a filter of order " + inShort(filter.order) + " and cutoff " +
+                    inShort(filter.cutoff) + " (best: " + inShort(best) +
                     "); lower the cutoff, raise the order or raise the tolerance");
 }
 

@@ -7,7 +7,7 @@ namespace bandvox {
 /// Chiba, Aoki, Saito: "A Voxel Based Geometric Modeling" (1990), section 4, HE(u, v, w).
 /// H(0) = 1, so filtering keeps the integral. Nyquist is 0.5.
 struct ExponentialFilter {
-    double order = 2;      ///< n > 0; 2 is a Gaussian, larger ones are sharper and ring
+    double order = 2;      ///< n ≥ 1; 2 is a Gaussian, larger ones are sharper and ring
     double cutoff = 0.16;  ///< k_c > 0, cycles per voxel
 
     /// H(k); k in cycles per voxel, any sign.
@@ -17,7 +17,7 @@ struct ExponentialFilter {
     double atNyquist() const { return (*this)(0.5); }
 };
 
-/// Throws Error(ErrorKind::Usage) unless order is in [0.5, 64] and cutoff in [0.01, 0.5].
+/// Throws Error(ErrorKind::Usage) unless order is in [1, 64] and cutoff in [0.01, 0.5].
 void requireValid(const ExponentialFilter& filter);
 
 /// The filtered density of a half-space, at `distance` voxels outside its face:
