@@ -3,6 +3,7 @@
 #include "bandlimit/grid_assembly.h"
 #include "bandlimit/tile_filter.h"
 #include "bandlimit/tile_plan.h"
+#include "core/worker_pool.h"
 
 #include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/core/error.h>
@@ -14,7 +15,6 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <mutex>
 
 namespace bandvox {
 
@@ -77,35 +77,6 @@ double estimateMemory(const BoundarySource& source, const TilePlan& plan, const 
     return leaves * kBytesPerLeaf * kBorderShare + columns * 2 * sizeof(ColumnBlocks) +
            12.0 * static_cast<double>(source.elementCount()) + threadCount() * perThread;
 }
-
-// Lends each running task a worker of its own; there are as many as tasks at a time.
-template <typename Worker>
-class WorkerPool {
-  public:
-    explicit WorkerPool(std::function<std::unique_ptr<Worker>()> make) : mMake(std::move(make)) {}
-
-    std::unique_ptr<Worker> take() {
-        {
-            const std::lock_guard<std::mutex> lock(mMutex);
-            if (!mIdle.empty()) {
-                std::unique_ptr<Worker> worker = std::move(mIdle.back());
-                mIdle.pop_back();
-                return worker;
-            }
-        }
-        return mMake();
-    }
-
-    void giveBack(std::unique_ptr<Worker> worker) {
-        const std::lock_guard<std::mutex> lock(mMutex);
-        mIdle.push_back(std::move(worker));
-    }
-
-  private:
-    std::function<std::unique_ptr<Worker>()> mMake;
-    std::mutex mMutex;
-    std::vector<std::unique_ptr<Worker>> mIdle;
-};
 
 // Fills all columns of tiles, in parallel.
 std::vector<ColumnBlocks> fillColumns(const BoundarySource& source, const TilePlan& plan,
