@@ -14,8 +14,7 @@ int floorDivide(int a, int b) {
 
 }  // namespace
 
-FarTiles::FarTiles(std::vector<ColumnBlocks>& columns, const TileLayout& layout)
-    : mLayout(layout) {
+FarTiles::FarTiles(std::vector<ColumnBlocks>& columns, const TileLayout& layout) : mLayout(layout) {
     mColumns.reserve(columns.size());
     for (ColumnBlocks& column : columns) mColumns.push_back(std::move(column.farValues));
 }

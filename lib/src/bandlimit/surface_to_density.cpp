@@ -4,6 +4,7 @@
 #include "bandlimit/tile_filter.h"
 #include "bandlimit/tile_plan.h"
 #include "core/words.h"
+#include "core/worker_pool.h"
 
 #include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/core/error.h>
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <mutex>
 
 namespace bandvox {
 

@@ -1,7 +1,7 @@
+#include "core/words.h"
 #include "reconstruct/brick_cache.h"
 #include "reconstruct/coefficient_brick.h"
 #include "reconstruct/interpolation_design.h"
-#include "core/words.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/reconstruct/brick_reconstruction.h>
@@ -101,8 +101,7 @@ std::unique_ptr<Reconstruction> makeBrickReconstruction(openvdb::FloatGrid::Cons
     if (!grid) throw Error(ErrorKind::Usage, "a reconstruction needs a grid, but got none");
     if (!(options.tolerance >= 1e-6 && options.tolerance <= 0.1)) {
         throw Error(ErrorKind::Usage, "the tolerance of a reconstruction is " +
-                                          inShort(options.tolerance) +
-                                          "; it must be 1e-6 to 0.1");
+                                          inShort(options.tolerance) + "; it must be 1e-6 to 0.1");
     }
     return std::make_unique<BrickReconstruction>(std::move(grid), options);
 }

@@ -1,4 +1,5 @@
 #include "reconstruct/interpolation_design.h"
+
 #include "core/words.h"
 
 #include <bandvox/core/error.h>
@@ -212,11 +213,11 @@ InterpolationDesign designInterpolation(const ExponentialFilter& filter, double 
             }
         }
     }
-    throw Error(ErrorKind::Usage,
-                "no interpolation of the lattice reaches an error of " + inShort(tolerance) +
-                    " (best: " + std::to_string(reached) + "): a filter of order " +
-                    inShort(filter.order) + " and cutoff " + inShort(filter.cutoff) +
-                    " leaves " + inShort(filter.atNyquist()) + " at Nyquist");
+    throw Error(ErrorKind::Usage, "no interpolation of the lattice reaches an error of " +
+                                      inShort(tolerance) + " (best: " + std::to_string(reached) +
+                                      "): a filter of order " + inShort(filter.order) +
+                                      " and cutoff " + inShort(filter.cutoff) + " leaves " +
+                                      inShort(filter.atNyquist()) + " at Nyquist");
 }
 
 }  // namespace bandvox

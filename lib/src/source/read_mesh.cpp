@@ -143,8 +143,7 @@ void checkPrecision(const Mesh& mesh, double reach, const fs::path& path,
 
 /// Appends a mesh under a transform. Returns how far its points reach from the origin of its own
 /// coordinates, along an axis, in world units.
-double appendMesh(const aiMesh& source, const Matrix& transform, const fs::path& path,
-                  Mesh& mesh) {
+double appendMesh(const aiMesh& source, const Matrix& transform, const fs::path& path, Mesh& mesh) {
     constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
     if (mesh.points.size() + source.mNumVertices > kMost) {
         fail(path, "has more than " + std::to_string(kMost) + " points; expected fewer");
@@ -184,8 +183,8 @@ void appendNodes(const aiScene& scene, const fs::path& path, MeshFile& file) {
         pending.pop_back();
         const Matrix transform = parent * static_cast<Matrix>(node->mTransformation);
         for (unsigned i = 0; i < node->mNumMeshes; ++i) {
-            reach = std::max(reach, appendMesh(*scene.mMeshes[node->mMeshes[i]], transform, path,
-                                               file.mesh));
+            reach = std::max(
+                reach, appendMesh(*scene.mMeshes[node->mMeshes[i]], transform, path, file.mesh));
             ++file.objects;
         }
         for (unsigned i = node->mNumChildren; i-- > 0;) {

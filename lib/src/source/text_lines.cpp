@@ -69,8 +69,8 @@ double TextLines::coordinate(std::size_t i) const {
     double value = 0.0;
     const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), value);
     // A number too small for a double is as good as 0.
-    const bool isSmall = word.find("e-") != std::string_view::npos ||
-                         word.find("E-") != std::string_view::npos;
+    const bool isSmall =
+        word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos;
     if (status == std::errc::result_out_of_range && isSmall) return 0.0;
     if (status == std::errc::invalid_argument || end != word.data() + word.size()) {
         fail("has " + quoted(mWords[i]) + "; expected a number");

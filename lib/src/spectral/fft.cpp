@@ -12,12 +12,6 @@ namespace bandvox {
 
 namespace {
 
-// Only fftw_execute is safe to call from several threads; all planning takes this.
-std::mutex& plannerMutex() {
-    static std::mutex mutex;
-    return mutex;
-}
-
 // Rows start on 32 bytes, and not on a multiple of 128 floats, which would make the rows of a
 // column share cache sets.
 int paddedRow(int length) {
@@ -27,6 +21,11 @@ int paddedRow(int length) {
 }
 
 }  // namespace
+
+std::mutex& fftPlannerMutex() {
+    static std::mutex mutex;
+    return mutex;
+}
 
 void FftBufferDeleter::operator()(float* data) const {
     fftwf_free(data);
@@ -75,7 +74,7 @@ RealFft3::~RealFft3() {
 
 const RealFft3& RealFft3::get(int n, int margin, int zMargin, int inner) {
     static std::map<std::tuple<int, int, int, int>, std::unique_ptr<RealFft3>> plans;
-    const std::lock_guard<std::mutex> lock(plannerMutex());
+    const std::lock_guard<std::mutex> lock(fftPlannerMutex());
     std::unique_ptr<RealFft3>& plan = plans[{n, margin, zMargin, inner}];
     if (!plan) plan.reset(new RealFft3(n, margin, zMargin, inner));
     return *plan;

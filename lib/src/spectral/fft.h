@@ -2,8 +2,12 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
 
 namespace bandvox {
+
+/// Only executing a plan is safe in several threads at once; all planning holds this.
+std::mutex& fftPlannerMutex();
 
 struct FftBufferDeleter {
     void operator()(float* data) const;
