@@ -310,7 +310,9 @@ TEST(MeshToVoxels, KeepsTheVolumeOfRealMeshes) {
         const VoxelResult result = meshToVoxels(source, {.resolution = 128});
         const double volume =
             static_cast<double>(result.voxels) * result.grid->transform().voxelVolume();
-        EXPECT_NEAR(volume, source.volume(), 0.01 * source.volume()) << name;
+        // A flat face along the lattice may be off by up to half a voxel all over.
+        EXPECT_NEAR(volume, source.volume(), 0.5 * result.grid->voxelSize().x() * source.area())
+            << name;
     }
 }
 
