@@ -17,6 +17,9 @@ struct Command {
 const CommandTable& convertTable();
 void runConvert(const CommandLine& line);
 
+const CommandTable& voxelizeTable();
+void runVoxelize(const CommandLine& line);
+
 const CommandTable& renderTable();
 void runRender(const CommandLine& line);
 
@@ -25,8 +28,10 @@ void runInfo(const CommandLine& line);
 
 /// All commands, in the order in which the help lists them.
 inline const std::vector<Command>& commands() {
-    static const std::vector<Command> all{
-        {convertTable, runConvert}, {renderTable, runRender}, {infoTable, runInfo}};
+    static const std::vector<Command> all{{convertTable, runConvert},
+                                          {voxelizeTable, runVoxelize},
+                                          {renderTable, runRender},
+                                          {infoTable, runInfo}};
     return all;
 }
 

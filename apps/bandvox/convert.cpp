@@ -2,19 +2,17 @@
 
 #include "command_run.h"
 #include "commands.h"
+#include "solid_input.h"
+#include "volume_options.h"
 #include "words.h"
 
 #include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/grid/density_grid.h>
-#include <bandvox/source/close_mesh.h>
 #include <bandvox/source/mesh_source.h>
-#include <bandvox/source/read_mesh.h>
 #include <bandvox/source/shapes.h>
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -22,9 +20,6 @@
 
 namespace bandvox::app {
 namespace {
-
-constexpr int kFinestResolution = 1'000'000;
-constexpr std::size_t kHolesListed = 3;  // without --verbose
 
 struct ConvertRequest {
     std::string input;
@@ -46,12 +41,7 @@ ConvertRequest parseConvert(const CommandLine& line) {
     requireExtension(request.output, {".vdb"});
 
     DensityOptions& density = request.density;
-    if (line.has("resolution") && line.has("voxel-size")) {
-        throw Error(ErrorKind::Usage,
-                    "--resolution and --voxel-size exclude each other; expected one of them");
-    }
-    density.resolution = line.wholeNumber("resolution", 1, kFinestResolution, density.resolution);
-    density.voxelSize = line.number("voxel-size", {.low = 0, .lowOpen = true}, density.voxelSize);
+    readSize(line, density.resolution, density.voxelSize);
     density.filter.cutoff =
         line.number("cutoff", {.low = 0.01, .high = 0.5}, density.filter.cutoff);
     density.filter.order = line.number("order", {.low = 1, .high = 64}, density.filter.order);
@@ -61,84 +51,16 @@ ConvertRequest parseConvert(const CommandLine& line) {
         line.number("iso", {.low = 0, .high = 1, .lowOpen = true, .highOpen = true}, density.iso);
     density.clamp = line.has("clamp");
 
-    using Compression = VdbWriteOptions::Compression;
     request.write.half = line.has("half");
-    request.write.compression =
-        std::array{Compression::Blosc, Compression::Zip,
-                   Compression::None}[line.choice("compression", {"blosc", "zip", "none"}, 0)];
+    request.write.compression = readCompression(line);
     return request;
 }
 
-void requireMeshOrShape(const std::string& input) {
-    if (isShape(input) || isMeshFile(input)) return;
-    const std::string extension = extensionOf(input);
-    const std::string found = extension.empty() ? "it has no extension"
-                              : extension == ".vdb"
-                                  ? "it is a VDB already"
-                                  : "'" + extension + "' is no kind of file that can be read";
-    throw Error(ErrorKind::Input, "cannot convert '" + input + "': " + found +
-                                      "; expected a mesh (" + joined(meshExtensions(), " ") +
-                                      ") or a shape (shape:" + joined(shapeNames(), " shape:") +
-                                      ")");
-}
-
-void sayHoles(CommandRun& run, const std::vector<CappedHole>& holes) {
-    if (holes.empty()) return;
-    const std::size_t listed = run.verbose() ? holes.size() : std::min(holes.size(), kHolesListed);
-    run.say("capped   " + formatCount(static_cast<std::int64_t>(holes.size()), "hole", "holes") +
-            ":");
-    for (std::size_t i = 0; i < listed; ++i) {
-        run.say("         " + std::to_string(holes[i].edges) + " edges, perimeter " +
-                formatNumber(holes[i].perimeter) + ", around " + formatVector(holes[i].center));
-    }
-    if (listed < holes.size()) {
-        run.say("         and " + std::to_string(holes.size() - listed) +
-                " smaller ones (--verbose lists them)");
-    }
-}
-
-void sayRepairs(CommandRun& run, const CloseMeshReport& report) {
-    std::vector<std::string> parts;
-    const auto add = [&](std::size_t count, const char* one, const char* many) {
-        if (count > 0) {
-            parts.push_back(formatCount(static_cast<std::int64_t>(count), one, many));
-        }
-    };
-    add(report.components, "piece", "pieces");
-    add(report.pointsWelded, "point welded", "points welded");
-    add(report.degenerateTriangles, "triangle without area dropped",
-        "triangles without area dropped");
-    add(report.trianglesFlipped, "triangle flipped", "triangles flipped");
-    add(report.componentsTurned, "piece turned outward", "pieces turned outward");
-    add(report.nonManifoldEdges, "edge of more than two triangles",
-        "edges of more than two triangles");
-    run.say("solid    " + joined(parts, ", "));
-    sayHoles(run, report.holes);
-}
-
-Solid loadMesh(CommandRun& run, const std::filesystem::path& path) {
-    MeshFile file = readMesh(path, run.progress());
-    run.say("read     " + path.string() + ": " +
-            formatCount(static_cast<std::int64_t>(file.mesh.points.size()), "point", "points") +
-            ", " +
-            formatCount(static_cast<std::int64_t>(file.mesh.triangles.size()), "triangle",
-                        "triangles") +
-            ", " + formatCount(static_cast<std::int64_t>(file.objects), "object", "objects"));
-    run.count("points", file.mesh.points.size());
-    run.count("triangles", file.mesh.triangles.size());
-    run.count("objects", file.objects);
-    run.warn(file.warnings, ErrorKind::Input);
-
-    ClosedMesh closed = closeMesh(std::move(file.mesh), {}, run.progress());
-    sayRepairs(run, closed.report);
-    run.count("holes_capped", closed.report.holes.size());
-    run.warn(closed.report.warnings, ErrorKind::Input);
-    return {std::make_unique<MeshSource>(path.filename().string(), std::move(closed.mesh)),
-            static_cast<int>(closed.report.holes.size())};
-}
-
 Solid loadSolid(CommandRun& run, const std::string& input) {
-    if (!isShape(input)) return loadMesh(run, input);
+    if (!isShape(input)) {
+        SolidMesh mesh = loadSolidMesh(run, input);
+        return {std::move(mesh.source), mesh.holesCapped};
+    }
     Solid solid{makeShapeBoundary(input), 0};
     run.say("read     " + input);
     return solid;
@@ -185,9 +107,7 @@ void sayResult(CommandRun& run, const DensityResult& result) {
 const CommandTable& convertTable() {
     static const CommandTable table = [] {
         const DensityOptions density;
-        const std::string size = "Size";
         const std::string filter = "Filter";
-        const std::string output = "Output";
         return CommandTable{
             "convert",
             "Turn a mesh or a built-in shape into a band-limited density (.vdb).",
@@ -195,13 +115,10 @@ const CommandTable& convertTable() {
             "between only what the grid can hold. The solid is filtered before it is sampled, so "
             "nothing aliases; the error is measured and stored in the grid. Holes of the mesh are "
             "capped, and said so.",
-            {{"INPUT", "A mesh (" + joined(meshExtensions(), " ") +
-                           ") or a built-in shape (shape:" + joined(shapeNames(), " shape:") +
-                           ")."}},
+            {solidInputEntry()},
             {
-                {"resolution", 'r', "N", std::to_string(density.resolution),
-                 "Voxels along the longest side of the object's box.", size},
-                {"voxel-size", 0, "S", "", "Side of a voxel in world units, instead.", size},
+                resolutionEntry(density.resolution),
+                voxelSizeEntry(),
                 {"cutoff", 0, "K", formatNumber(density.filter.cutoff),
                  "Cutoff k_c of the filter exp(-(k/k_c)^n), in cycles per voxel, 0.01 to 0.5.",
                  filter},
@@ -217,9 +134,9 @@ const CommandTable& convertTable() {
                  filter},
                 {"iso", 0, "D", formatNumber(density.iso),
                  "Density that is the surface, for the commands that come after.", filter},
-                {"output", 'o', "FILE", "", "The .vdb file to write. Needed.", output},
-                {"half", 0, "", "", "Store 16-bit values.", output},
-                {"compression", 0, "KIND", "blosc", "blosc, zip or none.", output},
+                vdbOutputEntry(),
+                {"half", 0, "", "", "Store 16-bit values.", "Output"},
+                compressionEntry(),
             },
             {
                 {"bandvox convert bunny.obj -o bunny.vdb --resolution 512",
@@ -235,7 +152,7 @@ const CommandTable& convertTable() {
 
 void runConvert(const CommandLine& line) {
     const ConvertRequest request = parseConvert(line);
-    requireMeshOrShape(request.input);
+    requireMeshOrShape("convert", request.input);
     CommandRun run(line);
     AtomicFile output(request.output);
 

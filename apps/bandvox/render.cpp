@@ -7,6 +7,7 @@
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/render/density_to_image.h>
 #include <bandvox/render/image.h>
+#include <bandvox/render/shading.h>
 #include <bandvox/source/read_mesh.h>
 #include <bandvox/source/shapes.h>
 
@@ -61,6 +62,7 @@ RenderRequest parseRender(const CommandLine& line) {
     }
     options.samples = line.wholeNumber("samples", 1, kMostSamples, options.samples);
     options.camera = parseCamera(line);
+    options.shading = static_cast<Shading>(line.choice("shading", shadingNames(), 0));
     if (line.has("iso")) options.iso = line.number("iso", {}, 0);
     options.light = line.vector("light").value_or(options.light);
     options.color = line.vector("color", kColor).value_or(options.color);
@@ -156,6 +158,11 @@ const CommandTable& renderTable() {
                 {"grid", 0, "NAME", "density, or the only one of floats", "Which grid to draw.",
                  look},
                 {"iso", 0, "D", "as stored, else 0.5", "Density that is the surface.", look},
+                {"shading", 0, "KIND", shadingNames().front(),
+                 joined(shadingNames(), ", ") +
+                     ": where normals come from. All but the first see voxels as cubes, show "
+                     "stripes, and are here for comparison.",
+                 look},
                 {"light", 0, "X,Y,Z", vector(options.light),
                  "Direction to the light, along the camera's right, up and back.", look},
                 {"color", 0, "R,G,B", vector(options.color), "Linear colour of the surface.", look},

@@ -30,7 +30,7 @@ TEST(Help, ListsTheCommands) {
     const RunResult bare = runBandvox({});
     EXPECT_EQ(bare.status, 0);
     EXPECT_EQ(bare.err, "");
-    for (const char* word : {"convert", "render", "info", "Exit status", "130"}) {
+    for (const char* word : {"convert", "voxelize", "render", "info", "Exit status", "130"}) {
         EXPECT_NE(bare.out.find(word), std::string::npos) << word;
     }
     for (const Arguments& arguments : {Arguments{"--help"}, {"-h"}, {"help"}}) {
@@ -41,7 +41,7 @@ TEST(Help, ListsTheCommands) {
 }
 
 TEST(Help, ExplainsEveryCommand) {
-    for (const std::string command : {"convert", "render", "info"}) {
+    for (const std::string command : {"convert", "voxelize", "render", "info"}) {
         const RunResult result = runBandvox({"help", command});
         EXPECT_EQ(result.status, 0);
         EXPECT_EQ(result.err, "");
@@ -59,7 +59,7 @@ TEST(Help, ExplainsEveryCommand) {
 }
 
 TEST(Help, FitsATerminal) {
-    for (const std::string command : {"convert", "render", "info"}) {
+    for (const std::string command : {"convert", "voxelize", "render", "info"}) {
         std::istringstream lines(runBandvox({"help", command}).out);
         for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
     }
@@ -153,6 +153,7 @@ TEST(Usage, ReadsVectorsStrictly) {
     render("--aperture", "-1");
     render("--frame", "-1");
     render("--camera", "fisheye");
+    render("--shading", "gouraud");
 }
 
 }  // namespace

@@ -74,6 +74,15 @@ TEST(DensityMetadata, ComesBackAsItWasSet) {
     EXPECT_EQ(found->clamped, metadata.clamped);
 }
 
+TEST(DensityMetadata, BinaryVoxelsAreNoDensity) {
+    const openvdb::FloatGrid::Ptr grid = sampleGrid();
+    setVoxelMetadata(*grid, "bunny.obj");
+    setVoxelMetadata(*grid, "cow.obj");
+    EXPECT_EQ(grid->metaValue<std::string>("bandvox_source"), "cow.obj");
+    EXPECT_EQ(grid->metaValue<double>("bandvox_iso"), 0.5);
+    EXPECT_FALSE(densityMetadata(*grid));
+}
+
 TEST(DensityIntegral, CountsVoxelsAndTilesInWorldUnits) {
     double sum = 512;
     for (int i = 0; i < 20; ++i) sum += 0.1 + 0.01 * i;

@@ -1,3 +1,4 @@
+#include <bandvox/core/version.h>
 #include <bandvox/grid/density_grid.h>
 
 #include <openvdb/Metadata.h>
@@ -26,29 +27,38 @@ void visitMembers(Metadata& metadata, const Visitor& visit) {
     visit("clamped", metadata.clamped);
 }
 
+template <typename Value>
+void setMember(openvdb::GridBase& grid, const char* name, const Value& value) {
+    const std::string key = std::string(kPrefix) + name;
+    if (grid[key]) grid.removeMeta(key);
+    grid.insertMeta(key, openvdb::TypedMetadata<Value>(value));
+}
+
 }  // namespace
 
 void setDensityMetadata(openvdb::GridBase& grid, const DensityMetadata& metadata) {
-    visitMembers(metadata, [&grid](const char* name, const auto& value) {
-        using Value = std::decay_t<decltype(value)>;
-        const std::string key = std::string(kPrefix) + name;
-        if (grid[key]) grid.removeMeta(key);
-        grid.insertMeta(key, openvdb::TypedMetadata<Value>(value));
-    });
+    visitMembers(metadata,
+                 [&grid](const char* name, const auto& value) { setMember(grid, name, value); });
+}
+
+void setVoxelMetadata(openvdb::GridBase& grid, const std::string& source) {
+    setMember(grid, "version", std::string(version()));
+    setMember(grid, "source", source);
+    setMember(grid, "iso", 0.5);
 }
 
 std::optional<DensityMetadata> densityMetadata(const openvdb::GridBase& grid) {
+    // Without its filter a density cannot be read as a band-limited one.
+    for (const char* needed : {"order", "cutoff"}) {
+        if (!grid[std::string(kPrefix) + needed]) return std::nullopt;
+    }
     DensityMetadata metadata;
-    bool found = false;
     visitMembers(metadata, [&](const char* name, auto& value) {
         using Value = std::decay_t<decltype(value)>;
         const auto typed =
             grid.getMetadata<openvdb::TypedMetadata<Value>>(std::string(kPrefix) + name);
-        if (!typed) return;
-        value = typed->value();
-        found = true;
+        if (typed) value = typed->value();
     });
-    if (!found) return std::nullopt;
     return metadata;
 }
 

@@ -1,11 +1,12 @@
 #include "reconstruct/interpolation_design.h"
+#include "render/picture.h"
+#include "render/picture_request.h"
 #include "render/ray_march.h"
 #include "render/surface_blocks.h"
+#include "render/voxels_to_image.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>
-#include <bandvox/core/parallel.h>
-#include <bandvox/core/version.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/reconstruct/brick_reconstruction.h>
 #include <bandvox/render/density_to_image.h>
@@ -13,22 +14,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace bandvox {
 
 namespace {
-
-constexpr int kLargestSide = 65536;
-constexpr int kMostSamples = 4096;
-
-// Pixels along the side of what one task draws.
-constexpr int kImageTile = 32;
 
 // The eye cannot tell a finer reconstruction; a coarser one is no picture of the density.
 constexpr double kFinestTolerance = 1e-4;
@@ -39,98 +32,6 @@ constexpr double kSteepestMargin = 1.5;
 
 // Gradients below this part of a flat face's have no direction worth showing.
 constexpr double kFlatGradient = 1e-4;
-
-template <typename Value>
-void requireInRange(const char* what, Value found, Value lowest, Value highest) {
-    if (found >= lowest && found <= highest) return;
-    std::ostringstream message;
-    message << "the picture's " << what << " is " << found << "; it must be " << lowest << " to "
-            << highest;
-    throw Error(ErrorKind::Usage, message.str());
-}
-
-void requireColor(const char* what, const openvdb::Vec3d& color) {
-    for (int c = 0; c < 3; ++c) requireInRange(what, color[c], 0.0, 1e6);
-}
-
-void requireValid(const RenderOptions& options) {
-    requireInRange("width, pixels,", options.width, 1, kLargestSide);
-    requireInRange("height, pixels,", options.height, 1, kLargestSide);
-    requireInRange("number of samples per pixel", options.samples, 1, kMostSamples);
-    requireInRange("ambient light", options.ambient, 0.0, 1.0);
-    requireColor("color", options.color);
-    if (options.background) requireColor("background", *options.background);
-    const double light = options.light.length();
-    if (!(light > 0) || !std::isfinite(light)) {
-        std::ostringstream message;
-        message << "the light comes from " << options.light << "; it must be a direction";
-        throw Error(ErrorKind::Usage, message.str());
-    }
-}
-
-// Throws unless `grid` is a density that can be drawn.
-void requireDensity(const openvdb::FloatGrid& grid) {
-    const std::string name = "the grid \"" + grid.getName() + "\" ";
-    if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) {
-        throw Error(ErrorKind::Input,
-                    name +
-                        "is a level set (signed distances); expected a density: convert it "
-                        "first, with `bandvox convert` or OpenVDB's sdfToFogVolume");
-    }
-    if (!grid.transform().isLinear()) {
-        throw Error(ErrorKind::Input, name + "has a transform of type " +
-                                          grid.transform().mapType() +
-                                          ", which bends lines of sight; expected a linear one");
-    }
-    if (grid.evalActiveVoxelBoundingBox().empty()) {
-        throw Error(ErrorKind::Input, name + "has no active voxel; expected a density");
-    }
-}
-
-double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata>& metadata,
-             const RenderOptions& options) {
-    const double iso = options.iso.value_or(metadata ? metadata->iso : 0.5);
-    if (!std::isfinite(iso) || !(iso > grid.background())) {
-        std::ostringstream message;
-        message << "the iso-value is " << iso << "; it must be above the grid's background, "
-                << grid.background();
-        throw Error(ErrorKind::Usage, message.str());
-    }
-    return iso;
-}
-
-// The box of the active voxels, world units.
-openvdb::BBoxd worldBox(const openvdb::FloatGrid& grid) {
-    const openvdb::CoordBBox voxels = grid.evalActiveVoxelBoundingBox();
-    const openvdb::BBoxd index(voxels.min().asVec3d() - openvdb::Vec3d(0.5),
-                               voxels.max().asVec3d() + openvdb::Vec3d(0.5));
-    openvdb::BBoxd world;
-    for (int i = 0; i < 8; ++i) {
-        world.expand(grid.indexToWorld(openvdb::Vec3d(i & 1 ? index.max()[0] : index.min()[0],
-                                                      i & 2 ? index.max()[1] : index.min()[1],
-                                                      i & 4 ? index.max()[2] : index.min()[2])));
-    }
-    return world;
-}
-
-// Where in a pixel, [0, 1)², its lines of sight pass: rows of evenly spaced places.
-std::vector<openvdb::Vec2d> samplePlaces(int samples) {
-    const int rows = std::max(1, static_cast<int>(std::sqrt(samples + 0.5)));
-    std::vector<openvdb::Vec2d> places;
-    for (int row = 0; row < rows; ++row) {
-        const int columns = samples / rows + (row < samples % rows ? 1 : 0);
-        for (int column = 0; column < columns; ++column) {
-            places.emplace_back((column + 0.5) / columns, (row + 0.5) / rows);
-        }
-    }
-    return places;
-}
-
-// What a line of sight meets.
-struct Sight {
-    double depth;
-    openvdb::Vec3d position, normal;  // world
-};
 
 // Everything that drawing a pixel needs, the same for all threads.
 class Scene {
@@ -143,12 +44,8 @@ class Scene {
           mCamera(camera),
           mMarch(march),
           mFlat(kFlatGradient * faceGradient),
-          mPlaces(samplePlaces(options.samples)) {
-        const openvdb::Vec3d& light = options.light;
-        mLight =
-            (light[0] * camera.right() + light[1] * camera.upward() - light[2] * camera.forward())
-                .unit();
-    }
+          mPlaces(samplePlaces(options.samples)),
+          mLighting(options, camera) {}
 
     // Draws one pixel. Returns how many of its lines of sight hit.
     int draw(int column, int row, DensityProbe& density, Image& image) const {
@@ -160,21 +57,11 @@ class Scene {
             const auto sight = look(mCamera.ray(column + place[0], row + place[1]), density);
             if (!sight) continue;
             ++hits;
-            light += shade(*sight);
+            light += mLighting.shade(sight->normal);
             if (!nearest || sight->depth < nearest->depth) nearest = sight;
         }
-        const double coverage = double(hits) / mOptions.samples;
-        light /= mOptions.samples;
-        if (mOptions.background) light += (1 - coverage) * *mOptions.background;
-        for (int c = 0; c < 3; ++c) image.color[4 * pixel + c] = static_cast<float>(light[c]);
-        image.color[4 * pixel + 3] = mOptions.background ? 1.0F : static_cast<float>(coverage);
-        if (nearest) {
-            image.depth[pixel] = static_cast<float>(nearest->depth);
-            for (int c = 0; c < 3; ++c) {
-                image.normal[3 * pixel + c] = static_cast<float>(nearest->normal[c]);
-                image.position[3 * pixel + c] = static_cast<float>(nearest->position[c]);
-            }
-        }
+        setColor(image, pixel, light, hits, mOptions);
+        if (nearest) setSight(image, pixel, *nearest);
         return hits;
     }
 
@@ -193,11 +80,6 @@ class Scene {
         return Sight{mCamera.depth(position), position, normal};
     }
 
-    openvdb::Vec3d shade(const Sight& sight) const {
-        const double lambert = std::max(sight.normal.dot(mLight), 0.0);
-        return mOptions.color * (mOptions.ambient + (1 - mOptions.ambient) * lambert);
-    }
-
     const openvdb::math::Transform& mTransform;
     openvdb::Mat4d mToIndex;
     const RenderOptions& mOptions;
@@ -205,29 +87,8 @@ class Scene {
     const RayMarch& mMarch;
     double mFlat;
     std::vector<openvdb::Vec2d> mPlaces;
-    openvdb::Vec3d mLight;
+    Lighting mLighting;
 };
-
-Image blankImage(const RenderOptions& options, double iso,
-                 const std::optional<DensityMetadata>& metadata) {
-    const std::size_t pixels = static_cast<std::size_t>(options.width) * options.height;
-    requireMemory(11.0 * sizeof(float) * static_cast<double>(pixels), "the picture");
-    Image image;
-    image.width = options.width;
-    image.height = options.height;
-    image.color.assign(4 * pixels, 0.0F);
-    image.depth.assign(pixels, std::numeric_limits<float>::infinity());
-    image.normal.assign(3 * pixels, 0.0F);
-    image.position.assign(3 * pixels, 0.0F);
-    std::ostringstream isoText;
-    isoText << iso;
-    image.metadata = {{"Software", std::string("Bandvox ") + version()},
-                      {"bandvox_iso", isoText.str()}};
-    if (metadata && !metadata->source.empty()) {
-        image.metadata.emplace_back("bandvox_source", metadata->source);
-    }
-    return image;
-}
 
 // How far lines of sight may step. Solids under the default filter have a sharp bound; others,
 // and what was not made by this library, are taken to be about as steep as a flat face.
@@ -266,26 +127,17 @@ std::unique_ptr<Reconstruction> readLattice(const openvdb::FloatGrid::ConstPtr& 
     }
 }
 
-// Draws all pixels, a tile to a task. Returns how many lines of sight hit.
+// Draws all pixels. Returns how many lines of sight hit.
 std::int64_t drawTiles(const Scene& scene, const Reconstruction& reconstruction, Image& image,
                        Progress& progress) {
-    const std::int64_t across = (image.width + kImageTile - 1) / kImageTile;
-    const std::int64_t down = (image.height + kImageTile - 1) / kImageTile;
-    const ProgressStage stage(progress, "drawing", across * down);
+    const ProgressStage stage(progress, "drawing", tileCount(image.width, image.height));
     std::atomic<std::int64_t> hits{0};
-    parallelFor(across * down, [&](std::int64_t tile) {
-        progress.throwIfInterrupted();
+    forEachTile(image.width, image.height, progress, [&](const PixelBox& tile) {
         const auto density = reconstruction.probe();
-        const int left = static_cast<int>(tile % across) * kImageTile;
-        const int top = static_cast<int>(tile / across) * kImageTile;
         std::int64_t tileHits = 0;
-        for (int row = top; row < std::min(top + kImageTile, image.height); ++row) {
-            for (int column = left; column < std::min(left + kImageTile, image.width); ++column) {
-                tileHits += scene.draw(column, row, *density, image);
-            }
-        }
+        tile.forEach(
+            [&](int column, int row) { tileHits += scene.draw(column, row, *density, image); });
         hits += tileHits;
-        progress.advance();
     });
     return hits;
 }
@@ -301,6 +153,9 @@ RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptio
     const std::optional<DensityMetadata> metadata = densityMetadata(*grid);
     const double iso = isoOf(*grid, metadata, options);
     const Camera camera(options.camera, options.width, options.height, worldBox(*grid));
+    if (options.shading != Shading::Spectral) {
+        return voxelsToImage({*grid, iso, camera, options}, progress);
+    }
 
     // Read the lattice by the filter that it was made with.
     const auto filter =
@@ -313,12 +168,7 @@ RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptio
     // not much further; half the height is on the safe side.
     const double slope = faceGradient(filter);
     const SurfaceBlocks blocks(*grid, 0.5 * (iso + grid->background()));
-    if (blocks.empty()) {
-        std::ostringstream message;
-        message << "nothing to see: the density is at most " << blocks.maximum()
-                << ", below the iso-value " << iso;
-        throw Error(ErrorKind::Result, message.str());
-    }
+    if (blocks.empty()) failEmpty(blocks.maximum(), iso);
     const RayMarch march(blocks, iso, clearDistance(*grid, metadata, blocks.maximum(), iso, slope));
 
     // Draw.
@@ -327,11 +177,7 @@ RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptio
     const Scene scene(*grid, options, camera, march, slope);
     result.hits = drawTiles(scene, *reconstruction, result.image, progress);
     result.rays = std::int64_t(options.width) * options.height * options.samples;
-    if (result.hits == 0) {
-        throw Error(ErrorKind::Result,
-                    "nothing to see: none of " + std::to_string(result.rays) +
-                        " lines of sight meets the surface; expected the camera to face it");
-    }
+    requireHits(result);
     return result;
 }
 

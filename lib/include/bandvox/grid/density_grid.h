@@ -31,8 +31,13 @@ struct DensityMetadata {
 /// Stores `metadata` in `grid`, replacing what was there.
 void setDensityMetadata(openvdb::GridBase& grid, const DensityMetadata& metadata);
 
-/// What `grid` says of itself, or nothing if it was not made by this library.
+/// What `grid` says of itself, or nothing if it does not name the filter that it was made with:
+/// then it is no band-limited density of this library.
 std::optional<DensityMetadata> densityMetadata(const openvdb::GridBase& grid);
+
+/// Stores in a grid of binary voxels what it can say of itself: bandvox_version, bandvox_source,
+/// and bandvox_iso = 0.5. For densityMetadata it stays a grid of unknown origin.
+void setVoxelMetadata(openvdb::GridBase& grid, const std::string& source);
 
 /// Integral of the density: the sum of all active values times a voxel's volume, world units³.
 /// Summed in one order, so the same for any number of threads.

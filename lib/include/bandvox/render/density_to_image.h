@@ -3,6 +3,7 @@
 #include <bandvox/core/progress.h>
 #include <bandvox/render/camera.h>
 #include <bandvox/render/image.h>
+#include <bandvox/render/shading.h>
 
 #include <openvdb/openvdb.h>
 
@@ -17,6 +18,7 @@ struct RenderOptions {
     int height = 1024;  ///< pixels; 1 to 65536
     int samples = 1;    ///< lines of sight per pixel, on a regular grid; ≥ 1
     CameraOptions camera;
+    Shading shading = Shading::Spectral;   ///< where normals come from
     std::optional<double> iso;             ///< default: what the grid's metadata says, else 0.5
     openvdb::Vec3d light{-0.4, 0.7, 0.8};  ///< towards the light, in camera axes (right, up, back)
     openvdb::Vec3d color{0.8, 0.8, 0.8};   ///< linear, of the surface
@@ -32,7 +34,9 @@ struct RenderResult {
 };
 
 /// Draws the surface {density = iso} with Lambert shading. Each line of sight is bracketed on
-/// the grid and refined on the band-limited reconstruction; the normal is its gradient.
+/// the grid and refined on the band-limited reconstruction; the normal is its gradient. With
+/// another Shading, lines of sight end at the faces of voxels instead; Shading::Depth leaves the
+/// picture's normals 0.
 ///
 /// Figure 7 and section 3.2 of Chiba, Aoki, Saito (1990), with signed frequencies.
 /// Throws Error(ErrorKind::Usage) for options out of range, Error(ErrorKind::Input) if the grid

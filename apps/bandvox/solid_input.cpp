@@ -1,0 +1,98 @@
+#include "solid_input.h"
+
+#include "words.h"
+
+#include <bandvox/source/close_mesh.h>
+#include <bandvox/source/read_mesh.h>
+#include <bandvox/source/shapes.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+namespace bandvox::app {
+namespace {
+
+constexpr std::size_t kHolesListed = 3;  // without --verbose
+
+void sayHoles(CommandRun& run, const std::vector<CappedHole>& holes) {
+    if (holes.empty()) return;
+    const std::size_t listed = run.verbose() ? holes.size() : std::min(holes.size(), kHolesListed);
+    run.say("capped   " + formatCount(static_cast<std::int64_t>(holes.size()), "hole", "holes") +
+            ":");
+    for (std::size_t i = 0; i < listed; ++i) {
+        run.say("         " + std::to_string(holes[i].edges) + " edges, perimeter " +
+                formatNumber(holes[i].perimeter) + ", around " + formatVector(holes[i].center));
+    }
+    if (listed < holes.size()) {
+        run.say("         and " + std::to_string(holes.size() - listed) +
+                " smaller ones (--verbose lists them)");
+    }
+}
+
+void sayRepairs(CommandRun& run, const CloseMeshReport& report) {
+    std::vector<std::string> parts;
+    const auto add = [&](std::size_t count, const char* one, const char* many) {
+        if (count > 0) {
+            parts.push_back(formatCount(static_cast<std::int64_t>(count), one, many));
+        }
+    };
+    add(report.components, "piece", "pieces");
+    add(report.pointsWelded, "point welded", "points welded");
+    add(report.degenerateTriangles, "triangle without area dropped",
+        "triangles without area dropped");
+    add(report.trianglesFlipped, "triangle flipped", "triangles flipped");
+    add(report.componentsTurned, "piece turned outward", "pieces turned outward");
+    add(report.nonManifoldEdges, "edge of more than two triangles",
+        "edges of more than two triangles");
+    run.say("solid    " + joined(parts, ", "));
+    sayHoles(run, report.holes);
+}
+
+std::string meshOrShape() {
+    return "mesh (" + joined(meshExtensions(), " ") +
+           ") or a built-in shape (shape:" + joined(shapeNames(), " shape:") + ")";
+}
+
+}  // namespace
+
+PositionalEntry solidInputEntry() {
+    return {"INPUT", "A " + meshOrShape() + "."};
+}
+
+void requireMeshOrShape(const std::string& verb, const std::string& input) {
+    if (isShape(input) || isMeshFile(input)) return;
+    const std::string extension = extensionOf(input);
+    const std::string found = extension.empty() ? "it has no extension"
+                              : extension == ".vdb"
+                                  ? "it is a VDB already"
+                                  : "'" + extension + "' is no kind of file that can be read";
+    throw Error(ErrorKind::Input,
+                "cannot " + verb + " '" + input + "': " + found + "; expected a " + meshOrShape());
+}
+
+SolidMesh loadSolidMesh(CommandRun& run, const std::string& input) {
+    const std::filesystem::path path = input;
+    MeshFile file = readMesh(path, run.progress());
+    run.say("read     " + path.string() + ": " +
+            formatCount(static_cast<std::int64_t>(file.mesh.points.size()), "point", "points") +
+            ", " +
+            formatCount(static_cast<std::int64_t>(file.mesh.triangles.size()), "triangle",
+                        "triangles") +
+            ", " + formatCount(static_cast<std::int64_t>(file.objects), "object", "objects"));
+    run.count("points", file.mesh.points.size());
+    run.count("triangles", file.mesh.triangles.size());
+    run.count("objects", file.objects);
+    run.warn(file.warnings, ErrorKind::Input);
+
+    ClosedMesh closed = closeMesh(std::move(file.mesh), {}, run.progress());
+    sayRepairs(run, closed.report);
+    run.count("holes_capped", closed.report.holes.size());
+    run.warn(closed.report.warnings, ErrorKind::Input);
+    return {std::make_unique<MeshSource>(path.filename().string(), std::move(closed.mesh)),
+            static_cast<int>(closed.report.holes.size())};
+}
+
+}  // namespace bandvox::app

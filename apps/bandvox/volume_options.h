@@ -1,0 +1,22 @@
+#pragma once
+
+#include "command_line.h"
+#include "option_table.h"
+
+#include <bandvox/grid/density_grid.h>
+
+namespace bandvox::app {
+
+// Options shared by the commands that write a volume.
+
+OptionEntry resolutionEntry(int standard);
+OptionEntry voxelSizeEntry();
+OptionEntry vdbOutputEntry();
+OptionEntry compressionEntry();
+
+/// Sets what --resolution or --voxel-size give. Throws Error(ErrorKind::Usage) if both are there.
+void readSize(const CommandLine& line, int& resolution, double& voxelSize);
+
+VdbWriteOptions::Compression readCompression(const CommandLine& line);
+
+}  // namespace bandvox::app

@@ -1,0 +1,103 @@
+#include "render/picture_request.h"
+
+#include <bandvox/core/error.h>
+
+#include <cmath>
+#include <sstream>
+#include <string>
+
+namespace bandvox {
+
+namespace {
+
+constexpr int kLargestSide = 65536;
+constexpr int kMostSamples = 4096;
+
+template <typename Value>
+void requireInRange(const char* what, Value found, Value lowest, Value highest) {
+    if (found >= lowest && found <= highest) return;
+    std::ostringstream message;
+    message << "the picture's " << what << " is " << found << "; it must be " << lowest << " to "
+            << highest;
+    throw Error(ErrorKind::Usage, message.str());
+}
+
+void requireColor(const char* what, const openvdb::Vec3d& color) {
+    for (int c = 0; c < 3; ++c) requireInRange(what, color[c], 0.0, 1e6);
+}
+
+}  // namespace
+
+void requireValid(const RenderOptions& options) {
+    requireInRange("width, pixels,", options.width, 1, kLargestSide);
+    requireInRange("height, pixels,", options.height, 1, kLargestSide);
+    requireInRange("number of samples per pixel", options.samples, 1, kMostSamples);
+    requireInRange("ambient light", options.ambient, 0.0, 1.0);
+    requireColor("color", options.color);
+    if (options.background) requireColor("background", *options.background);
+    const double light = options.light.length();
+    if (!(light > 0) || !std::isfinite(light)) {
+        std::ostringstream message;
+        message << "the light comes from " << options.light << "; it must be a direction";
+        throw Error(ErrorKind::Usage, message.str());
+    }
+}
+
+void requireDensity(const openvdb::FloatGrid& grid) {
+    const std::string name = "the grid \"" + grid.getName() + "\" ";
+    if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) {
+        throw Error(ErrorKind::Input,
+                    name +
+                        "is a level set (signed distances); expected a density: convert it "
+                        "first, with `bandvox convert` or OpenVDB's sdfToFogVolume");
+    }
+    if (!grid.transform().isLinear()) {
+        throw Error(ErrorKind::Input, name + "has a transform of type " +
+                                          grid.transform().mapType() +
+                                          ", which bends lines of sight; expected a linear one");
+    }
+    if (grid.evalActiveVoxelBoundingBox().empty()) {
+        throw Error(ErrorKind::Input, name + "has no active voxel; expected a density");
+    }
+}
+
+double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata>& metadata,
+             const RenderOptions& options) {
+    const double iso = options.iso.value_or(metadata ? metadata->iso : 0.5);
+    if (!std::isfinite(iso) || !(iso > grid.background())) {
+        std::ostringstream message;
+        message << "the iso-value is " << iso << "; it must be above the grid's background, "
+                << grid.background();
+        throw Error(ErrorKind::Usage, message.str());
+    }
+    return iso;
+}
+
+openvdb::BBoxd worldBox(const openvdb::FloatGrid& grid) {
+    const openvdb::CoordBBox voxels = grid.evalActiveVoxelBoundingBox();
+    const openvdb::BBoxd index(voxels.min().asVec3d() - openvdb::Vec3d(0.5),
+                               voxels.max().asVec3d() + openvdb::Vec3d(0.5));
+    openvdb::BBoxd world;
+    for (int i = 0; i < 8; ++i) {
+        world.expand(grid.indexToWorld(openvdb::Vec3d(i & 1 ? index.max()[0] : index.min()[0],
+                                                      i & 2 ? index.max()[1] : index.min()[1],
+                                                      i & 4 ? index.max()[2] : index.min()[2])));
+    }
+    return world;
+}
+
+void failEmpty(double maximum, double iso) {
+    std::ostringstream message;
+    message << "nothing to see: the density is at most " << maximum << ", below the iso-value "
+            << iso;
+    throw Error(ErrorKind::Result, message.str());
+}
+
+void requireHits(const RenderResult& result) {
+    if (result.hits > 0) return;
+    throw Error(ErrorKind::Result,
+                "nothing to see: none of " + std::to_string(result.rays) +
+                    " lines of sight meets the surface; expected the camera to face it");
+}
+
+}  // namespace bandvox

@@ -1,0 +1,88 @@
+#include "voxelize/voxel_lattice.h"
+
+#include "voxelize/voxel_column.h"
+
+#include <bandvox/core/error.h>
+#include <bandvox/core/memory.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace bandvox {
+
+namespace {
+
+// OpenVDB's indices go to 2^31; room is left for what is added to them.
+constexpr double kLargestIndex = 1 << 30;
+constexpr int kMostVoxels = 1 << 20;  // along a side
+
+template <typename... Parts>
+[[noreturn]] void fail(ErrorKind kind, const Parts&... parts) {
+    std::ostringstream message;
+    (message << ... << parts);
+    throw Error(kind, message.str());
+}
+
+void requireValid(const VoxelOptions& options) {
+    if (options.voxelSize == 0 && (options.resolution < 1 || options.resolution > kMostVoxels)) {
+        fail(ErrorKind::Usage, "the resolution is ", options.resolution,
+             "; it must be between 1 and ", kMostVoxels);
+    }
+    if (!(options.voxelSize >= 0 && std::isfinite(options.voxelSize))) {
+        fail(ErrorKind::Usage, "the voxel size is ", options.voxelSize,
+             "; it must be positive, in world units");
+    }
+}
+
+}  // namespace
+
+VoxelLattice layOutVoxels(const std::string& name, const openvdb::BBoxd& bounds,
+                          const VoxelOptions& options) {
+    requireValid(options);
+    const openvdb::Vec3d size = bounds.extents();
+    const double longest = std::max({size.x(), size.y(), size.z()});
+    if (!(longest > 0)) fail(ErrorKind::Input, name, ": its box has no size");
+
+    const double voxelSize =
+        options.voxelSize > 0 ? options.voxelSize : longest / options.resolution;
+    const openvdb::Vec3d low = bounds.min() / voxelSize;
+    const openvdb::Vec3d high = bounds.max() / voxelSize;
+    VoxelLattice lattice;
+    lattice.voxelSize = voxelSize;
+    for (int axis = 0; axis < 3; ++axis) {
+        // Written so that a NaN fails too.
+        if (!(low[axis] > -kLargestIndex && high[axis] < kLargestIndex)) {
+            fail(ErrorKind::Usage, "with voxels of ", voxelSize,
+                 " world units the object reaches index ", std::max(-low[axis], high[axis]),
+                 ", and indices must stay below 2^30");
+        }
+        if (!(high[axis] - low[axis] < kMostVoxels + 0.5)) {
+            fail(ErrorKind::Usage, "with voxels of ", voxelSize, " world units the object is ",
+                 high[axis] - low[axis], " voxels long; it must be at most ", kMostVoxels);
+        }
+        // Whole voxels more than the box: what rounds to its faces is still inside.
+        lattice.voxels.min()[axis] = static_cast<int>(std::floor(low[axis]));
+        lattice.voxels.max()[axis] = static_cast<int>(std::ceil(high[axis]));
+    }
+    lattice.firstBlock = lattice.voxels.min() >> kBlockLog2;
+    lattice.blockCount = (lattice.voxels.max() >> kBlockLog2) - lattice.firstBlock;
+    lattice.blockCount.offset(1);
+    return lattice;
+}
+
+void requireVoxelMemory(const VoxelLattice& lattice, double area) {
+    constexpr double kBytesPerLeaf = 2048 + 128;
+    constexpr double kMostBlocksPerFace = 1.8;  // √3 on a diagonal plane, and a little more
+    const openvdb::Coord& count = lattice.blockCount;
+    const double blocks = static_cast<double>(count.x()) * count.y() * count.z();
+    const double face = std::pow(kBlockSide * lattice.voxelSize, 2);
+    const double leaves = std::min(blocks, kMostBlocksPerFace * area / face);
+    std::ostringstream what;
+    what << "a grid of voxels of " << lattice.voxelSize << " world units";
+    requireMemory(
+        leaves * kBytesPerLeaf + static_cast<double>(lattice.columnCount()) * sizeof(ColumnVoxels),
+        what.str().c_str());
+}
+
+}  // namespace bandvox
