@@ -80,5 +80,16 @@ TEST(ExponentialFilter, RefusesWhatMakesNoSense) {
     EXPECT_THROW(filterReach({0.5, 0.01}, 1e-6), Error);
 }
 
+// Orders below 2 fall off like a power of the distance: their reach ends somewhere, or is refused,
+// without a search of minutes.
+TEST(ExponentialFilter, LowOrdersReachFarOrAreRefused) {
+    EXPECT_THROW(requireValid({0.5, 0.5}), Error);
+    EXPECT_NO_THROW(requireValid({1, 0.5}));
+    EXPECT_THROW(filterReach({1, 0.5}, 2.5e-5), Error);
+    const double reach = filterReach({1, 0.3}, 1e-2);
+    EXPECT_LE(std::abs(halfSpaceDensity({1, 0.3}, reach)), 1e-2);
+    EXPECT_GT(std::abs(halfSpaceDensity({1, 0.3}, reach - 0.5)), 1e-2);
+}
+
 }  // namespace
 }  // namespace bandvox

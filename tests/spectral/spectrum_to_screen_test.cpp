@@ -1,4 +1,4 @@
-#include "spectral/allocation_meter.h"
+#include "allocation_meter.h"
 
 #include <bandvox/core/parallel.h>
 #include <bandvox/source/shapes.h>

@@ -73,11 +73,11 @@ double chooseVoxelSize(const BoundarySource& source, const DensityOptions& optio
 // meshes between 128³ and 1024³.
 double estimateGridMemory(const BoundarySource& source, double voxelSize, const TilePlan& plan) {
     constexpr double kBytesPerLeaf = 2048 + 128;
-    constexpr double kBorderShare = 1.4;
+    constexpr double kBorderShare = 2;
     constexpr double kBytesPerNode = 36e3;
     constexpr double kNodeFace = 128 * 128;
     const double area = source.area() / (voxelSize * voxelSize);
-    const double thickness = plan.halo + DensityLeaf::DIM;  // of the leaves along the surface
+    const double thickness = 2 * plan.halo + DensityLeaf::DIM;  // of the leaves along the surface
     const double leaves = area * thickness / DensityLeaf::SIZE;
     return leaves * kBytesPerLeaf * kBorderShare + 2 * area / kNodeFace * kBytesPerNode;
 }

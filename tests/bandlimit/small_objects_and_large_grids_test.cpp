@@ -1,0 +1,90 @@
+// What surfaceToDensity does at the ends of its range: objects of few voxels, and of many.
+
+#include "allocation_meter.h"
+
+#include <bandvox/bandlimit/surface_to_density.h>
+#include <bandvox/core/error.h>
+#include <bandvox/source/mesh_source.h>
+#include <bandvox/source/shapes.h>
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace bandvox {
+namespace {
+
+using openvdb::Vec3d;
+
+MeshSource tetrahedron(double size) {
+    Mesh mesh;
+    mesh.points = {Vec3d(0), Vec3d(size, 0, 0), Vec3d(0, size, 0), Vec3d(0, 0, size)};
+    mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    return MeshSource("tetrahedron", mesh);
+}
+
+std::size_t peakOfCube(int resolution) {
+    const auto cube = makeShapeBoundary("shape:cube");
+    DensityOptions options;
+    options.resolution = resolution;
+    const AllocationMeter meter;
+    surfaceToDensity(*cube, options);
+    return meter.peak();
+}
+
+// Twice the resolution is four times the surface; a part does not grow, and borders vary.
+TEST(LargeGrids, MemoryFollowsTheSurface) {
+    const std::size_t small = peakOfCube(150);
+    const std::size_t large = peakOfCube(300);
+    EXPECT_LE(static_cast<double>(large), 5.5 * static_cast<double>(small));
+}
+
+TEST(LargeGrids, InteriorIsTiles) {
+    const auto cube = makeShapeBoundary("shape:cube");
+    DensityOptions options;
+    options.resolution = 500;
+    const DensityResult result = surfaceToDensity(*cube, options);
+    const openvdb::FloatTree& tree = result.grid->tree();
+    // The cube is [-1, 1]³, so index 0 is its middle.
+    EXPECT_EQ(tree.getValueDepth(openvdb::Coord(0)), 2);  // a cube of 128³
+    EXPECT_EQ(tree.getValue(openvdb::Coord(0)), 1.0F);
+    EXPECT_TRUE(tree.isValueOn(openvdb::Coord(0)));
+    for (const int x : {-243, -200, -130, -7, 60, 129, 243}) {
+        EXPECT_EQ(tree.getValue(openvdb::Coord(x, 11, -100)), 1.0F) << x;
+        EXPECT_EQ(tree.getValue(openvdb::Coord(5, x, 200)), 1.0F) << x;
+        EXPECT_EQ(tree.getValue(openvdb::Coord(-30, 40, x)), 1.0F) << x;
+    }
+    EXPECT_NEAR(result.metadata.gridVolume, 8, 8e-6);
+}
+
+TEST(SmallObjects, LostVolumeIsAWarning) {
+    DensityOptions options;
+    options.resolution = 1;
+    const DensityResult lost = surfaceToDensity(tetrahedron(1), options);
+    ASSERT_FALSE(lost.warnings.empty());
+    EXPECT_NE(lost.warnings.back().find("differs from the volume"), std::string::npos);
+    options.resolution = 64;
+    EXPECT_TRUE(surfaceToDensity(tetrahedron(1), options).warnings.empty());
+}
+
+TEST(SmallObjects, VoxelsBelowOpenVdbsSmallestAreRefused) {
+    const auto kindOf = [](double size, const DensityOptions& options) {
+        try {
+            surfaceToDensity(tetrahedron(size), options);
+        } catch (const Error& error) {
+            return error.kind();
+        }
+        return ErrorKind::Runtime;
+    };
+    DensityOptions options;
+    options.resolution = 32;
+    EXPECT_EQ(kindOf(1e-20, options), ErrorKind::Input);
+    options.voxelSize = 1e-20;
+    EXPECT_EQ(kindOf(1e-19, options), ErrorKind::Usage);
+    // A voxel that is only too small for the object takes more memory than there is.
+    options.voxelSize = 1e-12;
+    EXPECT_EQ(kindOf(1, options), ErrorKind::Memory);
+}
+
+}  // namespace
+}  // namespace bandvox
