@@ -23,6 +23,7 @@ constexpr int kMostPixels = 65536;  // along a side
 constexpr int kMostSamples = 1024;
 const Range kPositive{.low = 0, .lowOpen = true};
 const Range kColor{.low = 0};
+const Range kPlace{.low = -1e30, .high = 1e30};  // the squares of more are not finite
 
 struct RenderRequest {
     std::string input;
@@ -37,10 +38,10 @@ CameraOptions parseCamera(const CommandLine& line) {
     camera.projection = std::array{
         Projection::Perspective,
         Projection::Orthographic}[line.choice("camera", {"perspective", "orthographic"}, 0)];
-    camera.eye = line.vector("eye");
-    camera.lookat = line.vector("lookat");
-    camera.up = line.vector("up").value_or(camera.up);
-    camera.from = line.vector("from").value_or(camera.from);
+    camera.eye = line.vector("eye", kPlace);
+    camera.lookat = line.vector("lookat", kPlace);
+    camera.up = line.vector("up", kPlace);
+    camera.from = line.vector("from", kPlace).value_or(camera.from);
     camera.focal = line.number("focal", kPositive, camera.focal);
     camera.aperture = line.number("aperture", kPositive, camera.aperture);
     camera.frame = line.number("frame", {.low = 0}, camera.frame);
@@ -62,10 +63,11 @@ RenderRequest parseRender(const CommandLine& line) {
     options.samples = line.wholeNumber("samples", 1, kMostSamples, options.samples);
     options.camera = parseCamera(line);
     if (line.has("iso")) options.iso = line.number("iso", {}, 0);
-    options.light = line.vector("light").value_or(options.light);
+    options.light = line.vector("light", kPlace).value_or(options.light);
     options.color = line.vector("color", kColor).value_or(options.color);
     options.ambient = line.number("ambient", {.low = 0, .high = 1}, options.ambient);
     options.background = line.vector("background", kColor);
+    requireValid(options);
     return request;
 }
 
@@ -144,7 +146,7 @@ const CommandTable& renderTable() {
                 {"camera", 0, "KIND", "perspective", "perspective or orthographic.", view},
                 {"eye", 0, "X,Y,Z", "chosen", "Where the camera is, world.", view},
                 {"lookat", 0, "X,Y,Z", "the middle", "What it looks at, world.", view},
-                {"up", 0, "X,Y,Z", vector(camera.up), "What is up in the picture.", view},
+                {"up", 0, "X,Y,Z", "0,1,0, or z along y", "What is up in the picture.", view},
                 {"from", 0, "X,Y,Z", vector(camera.from),
                  "Direction from the object to the camera, if --eye is not given.", view},
                 {"focal", 0, "MM", formatNumber(camera.focal), "Focal length in mm (perspective).",

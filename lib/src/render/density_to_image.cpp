@@ -53,19 +53,9 @@ void requireColor(const char* what, const openvdb::Vec3d& color) {
     for (int c = 0; c < 3; ++c) requireInRange(what, color[c], 0.0, 1e6);
 }
 
-void requireValid(const RenderOptions& options) {
-    requireInRange("width, pixels,", options.width, 1, kLargestSide);
-    requireInRange("height, pixels,", options.height, 1, kLargestSide);
-    requireInRange("number of samples per pixel", options.samples, 1, kMostSamples);
-    requireInRange("ambient light", options.ambient, 0.0, 1.0);
-    requireColor("color", options.color);
-    if (options.background) requireColor("background", *options.background);
-    const double light = options.light.length();
-    if (!(light > 0) || !std::isfinite(light)) {
-        std::ostringstream message;
-        message << "the light comes from " << options.light << "; it must be a direction";
-        throw Error(ErrorKind::Usage, message.str());
-    }
+[[noreturn]] void failNotFinite(const openvdb::FloatGrid& grid) {
+    throw Error(ErrorKind::Input, "the grid \"" + grid.getName() +
+                                      "\" has values that are not finite; expected a density");
 }
 
 // Throws unless `grid` is a density that can be drawn.
@@ -85,6 +75,7 @@ void requireDensity(const openvdb::FloatGrid& grid) {
     if (grid.evalActiveVoxelBoundingBox().empty()) {
         throw Error(ErrorKind::Input, name + "has no active voxel; expected a density");
     }
+    if (!std::isfinite(grid.background())) failNotFinite(grid);
 }
 
 double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata>& metadata,
@@ -92,9 +83,13 @@ double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata
     const double iso = options.iso.value_or(metadata ? metadata->iso : 0.5);
     if (!std::isfinite(iso) || !(iso > grid.background())) {
         std::ostringstream message;
-        message << "the iso-value is " << iso << "; it must be above the grid's background, "
+        message << "the iso-value "
+                << (options.iso ? ""
+                    : metadata  ? "stored in the grid "
+                                : "")
+                << "is " << iso << "; it must be above the grid's background, "
                 << grid.background();
-        throw Error(ErrorKind::Usage, message.str());
+        throw Error(options.iso ? ErrorKind::Usage : ErrorKind::Input, message.str());
     }
     return iso;
 }
@@ -110,6 +105,7 @@ openvdb::BBoxd worldBox(const openvdb::FloatGrid& grid) {
                                                       i & 2 ? index.max()[1] : index.min()[1],
                                                       i & 4 ? index.max()[2] : index.min()[2])));
     }
+    if (!std::isfinite(world.extents().length())) failNotFinite(grid);
     return world;
 }
 
@@ -266,6 +262,19 @@ std::unique_ptr<Reconstruction> readLattice(const openvdb::FloatGrid::ConstPtr& 
     }
 }
 
+// No line of sight has met the surface: either it is not there, or it is elsewhere.
+[[noreturn]] void failUnseen(std::int64_t rays, double maximum, double iso) {
+    std::ostringstream message;
+    message << "nothing to see: ";
+    if (maximum < iso) {
+        message << "the density reaches " << maximum << " only, below the iso-value " << iso;
+    } else {
+        message << "none of " << rays
+                << " lines of sight meets the surface; expected the camera to face it";
+    }
+    throw Error(ErrorKind::Result, message.str());
+}
+
 // Draws all pixels, a tile to a task. Returns how many lines of sight hit.
 std::int64_t drawTiles(const Scene& scene, const Reconstruction& reconstruction, Image& image,
                        Progress& progress) {
@@ -274,12 +283,12 @@ std::int64_t drawTiles(const Scene& scene, const Reconstruction& reconstruction,
     const ProgressStage stage(progress, "drawing", across * down);
     std::atomic<std::int64_t> hits{0};
     parallelFor(across * down, [&](std::int64_t tile) {
-        progress.throwIfInterrupted();
         const auto density = reconstruction.probe();
         const int left = static_cast<int>(tile % across) * kImageTile;
         const int top = static_cast<int>(tile / across) * kImageTile;
         std::int64_t tileHits = 0;
         for (int row = top; row < std::min(top + kImageTile, image.height); ++row) {
+            progress.throwIfInterrupted();
             for (int column = left; column < std::min(left + kImageTile, image.width); ++column) {
                 tileHits += scene.draw(column, row, *density, image);
             }
@@ -291,6 +300,22 @@ std::int64_t drawTiles(const Scene& scene, const Reconstruction& reconstruction,
 }
 
 }  // namespace
+
+void requireValid(const RenderOptions& options) {
+    requireInRange("width, pixels,", options.width, 1, kLargestSide);
+    requireInRange("height, pixels,", options.height, 1, kLargestSide);
+    requireInRange("number of samples per pixel", options.samples, 1, kMostSamples);
+    requireInRange("ambient light", options.ambient, 0.0, 1.0);
+    requireColor("color", options.color);
+    if (options.background) requireColor("background", *options.background);
+    requireValid(options.camera);
+    const double light = options.light.length();
+    if (!(light > 0) || !std::isfinite(light)) {
+        std::ostringstream message;
+        message << "the light comes from " << options.light << "; it must be a direction";
+        throw Error(ErrorKind::Usage, message.str());
+    }
+}
 
 RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptions& options,
                             Progress& progress) {
@@ -313,6 +338,7 @@ RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptio
     // not much further; half the height is on the safe side.
     const double slope = faceGradient(filter);
     const SurfaceBlocks blocks(*grid, 0.5 * (iso + grid->background()));
+    if (!blocks.finite()) failNotFinite(*grid);
     if (blocks.empty()) {
         std::ostringstream message;
         message << "nothing to see: the density is at most " << blocks.maximum()
@@ -327,11 +353,7 @@ RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptio
     const Scene scene(*grid, options, camera, march, slope);
     result.hits = drawTiles(scene, *reconstruction, result.image, progress);
     result.rays = std::int64_t(options.width) * options.height * options.samples;
-    if (result.hits == 0) {
-        throw Error(ErrorKind::Result,
-                    "nothing to see: none of " + std::to_string(result.rays) +
-                        " lines of sight meets the surface; expected the camera to face it");
-    }
+    if (result.hits == 0) failUnseen(result.rays, blocks.maximum(), iso);
     return result;
 }
 
