@@ -2,9 +2,9 @@
 
 #include "command_run.h"
 #include "commands.h"
+#include "standard_streams.h"
 #include "words.h"
 
-#include <bandvox/grid/density_grid.h>
 #include <bandvox/render/density_to_image.h>
 #include <bandvox/render/image.h>
 #include <bandvox/source/read_mesh.h>
@@ -133,7 +133,7 @@ const CommandTable& renderTable() {
             "to the band-limited density that the grid stands for, and the normal is its "
             "gradient, so the picture shows no voxels. An .exr also holds depth (Z), normals (N) "
             "and positions (P).",
-            {{"INPUT", "A .vdb file."}},
+            {{"INPUT", "A .vdb file; stdin.vdb is the standard input."}},
             {
                 {"output", 'o', "FILE", "", "The .png or .exr file to write. Needed.", picture},
                 {"res", 0, "WxH",
@@ -185,7 +185,7 @@ void runRender(const CommandLine& line) {
     openvdb::GridPtrVec grids;
     {
         const ProgressStage stage(run.progress(), "read", 0);
-        grids = readVdb(request.input);
+        grids = readGrids(request.input);
     }
     const openvdb::FloatGrid::Ptr grid = chooseGrid(grids, request.grid, request.input);
     grids.clear();
@@ -201,8 +201,7 @@ void runRender(const CommandLine& line) {
     run.count("rays", result.rays);
     run.count("hits", result.hits);
 
-    run.writeOutput(output, request.output,
-                    [&](const std::filesystem::path& path) { writeImage(path, result.image); });
+    run.writeOutput(output, [&](AtomicFile& file) { writeImage(file, result.image); });
 }
 
 }  // namespace bandvox::app
