@@ -122,7 +122,7 @@ TEST_F(Render, SeesFromFarAwayAndFromAbove) {
 TEST_F(Render, JudgesTheViewBeforeItReads) {
     for (const Names& arguments :
          {Names{"--up", "0,0,0"}, Names{"--light", "0,0,0"}, Names{"--eye", "1e200,0,0"},
-          Names{"--from", "0,1,0", "--up", "0,2,0"},
+          Names{"--up", "0,2,0", "--from", "0,1,0"},
           Names{"--eye", "1,1,1", "--lookat", "1,1,1"}}) {
         Names all{"render", "none.vdb", "-o", "s.png"};
         all.insert(all.end(), arguments.begin(), arguments.end());
