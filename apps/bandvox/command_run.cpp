@@ -1,5 +1,6 @@
 #include "command_run.h"
 
+#include "standard_streams.h"
 #include "words.h"
 
 #include <bandvox/core/memory.h>
@@ -13,8 +14,12 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
 namespace bandvox::app {
+
+namespace fs = std::filesystem;
+
 namespace {
 
 constexpr int kMostThreads = 4096;
@@ -30,11 +35,37 @@ bool wantsProgress(const CommandLine& line) {
     }
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
-        text.replace(at, from.size(), to);
+/// True if writing one of them changes the other.
+bool isSameFile(const fs::path& a, const fs::path& b) {
+    std::error_code error;
+    const fs::path first = followLinks(a);
+    const fs::path second = followLinks(b);
+    // What goes to /dev/null changes nothing.
+    if (fs::is_character_file(first, error)) return false;
+    if (fs::equivalent(first, second, error)) return true;
+    const fs::path firstName = fs::weakly_canonical(fs::absolute(first), error);
+    if (error) return false;
+    return firstName == fs::weakly_canonical(fs::absolute(second), error) && !error;
+}
+
+/// Throws Error(ErrorKind::Usage) if the output or the statistics are one of the files before.
+void requireDistinctFiles(const CommandLine& line) {
+    std::vector<std::pair<std::string, fs::path>> files;
+    for (std::size_t i = 0; i < line.table().positionals.size(); ++i) {
+        files.emplace_back(line.table().positionals[i].name, line.positional(i));
     }
-    return text;
+    for (const std::string option : {"output", "stats"}) {
+        const auto given = line.text(option);
+        if (!given) continue;
+        const fs::path path = option == "output" ? outputPath(*given) : fs::path(*given);
+        for (const auto& [name, other] : files) {
+            if (!isSameFile(path, other)) continue;
+            throw Error(ErrorKind::Usage, "option --" + option + " is '" + *given +
+                                              "', the same file as " + name +
+                                              "; expected another one");
+        }
+        files.emplace_back("--" + option, path);
+    }
 }
 
 }  // namespace
@@ -51,6 +82,7 @@ CommandRun::CommandRun(const CommandLine& line)
     if (mQuiet && mVerbose) {
         throw Error(ErrorKind::Usage, "--quiet and --verbose exclude each other");
     }
+    requireDistinctFiles(line);
     if (const auto path = line.text("stats")) mStatistics = std::make_unique<AtomicFile>(*path);
 }
 
@@ -59,7 +91,7 @@ CommandRun::~CommandRun() = default;
 void CommandRun::say(const std::string& message) {
     if (mQuiet) return;
     mProgress.erase();
-    std::fprintf(stderr, "%s\n", message.c_str());
+    std::fprintf(stderr, "%s\n", printable(message).c_str());
 }
 
 void CommandRun::sayMore(const std::string& message) {
@@ -70,7 +102,7 @@ void CommandRun::warn(const std::vector<std::string>& warnings, ErrorKind strict
     if (warnings.empty()) return;
     mProgress.erase();
     for (const std::string& warning : warnings) {
-        std::fprintf(stderr, "bandvox: warning: %s\n", warning.c_str());
+        std::fprintf(stderr, "bandvox: warning: %s\n", printable(warning).c_str());
     }
     if (mStrict) {
         const auto count = static_cast<std::int64_t>(warnings.size());
@@ -83,25 +115,25 @@ void CommandRun::count(const std::string& name, const nlohmann::json& value) {
     (*mCounts)[name] = value;
 }
 
-void CommandRun::writeOutput(AtomicFile& output, const std::filesystem::path& target,
-                             const std::function<void(const std::filesystem::path&)>& write) {
+void CommandRun::writeOutput(AtomicFile& output, const std::function<void(AtomicFile&)>& write) {
     mProgress.throwIfInterrupted();
-    try {
+    {
         const ProgressStage stage(mProgress, "write", 0);
-        write(output.temporary());
-    } catch (const Error& error) {
-        // The user knows the target's name, not the temporary one.
-        throw Error(error.kind(),
-                    replaced(error.what(), output.temporary().string(), target.string()));
+        write(output);
     }
-    const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(output.temporary()));
-    count("output_bytes", bytes);
+    std::string size;
+    if (!output.inPlace()) {
+        const auto bytes = static_cast<std::int64_t>(fs::file_size(output.temporary()));
+        count("output_bytes", bytes);
+        size = ", " + formatBytes(bytes);
+    }
+    // Both files are whole before either of them gets its name.
     if (mStatistics) writeStatistics();
     mProgress.throwIfInterrupted();
     output.commit();
     if (mStatistics) mStatistics->commit();
-    say("wrote    " + target.string() + ", " + formatBytes(bytes) + ", after " +
-        formatNumber(seconds(), 3) + " s");
+    say("wrote    " + output.target().string() + size + ", after " + formatNumber(seconds(), 3) +
+        " s");
 }
 
 void CommandRun::finish() {
@@ -129,12 +161,12 @@ void CommandRun::writeStatistics() {
     }
     statistics["counts"] = *mCounts;
 
-    std::ofstream file(mStatistics->temporary(), std::ios::binary);
+    std::ofstream file = mStatistics->open();
     file << statistics.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
     file.close();
     if (!file) {
         throw Error(ErrorKind::Runtime, "cannot write the statistics to '" +
-                                            mStatistics->temporary().string() +
+                                            mStatistics->target().string() +
                                             "': " + std::strerror(errno));
     }
 }
@@ -155,15 +187,19 @@ void writeResult(const std::string& text) {
     }
 }
 
-std::string extensionOf(const std::filesystem::path& path) {
+std::string extensionOf(const fs::path& path) {
     return lowerCase(path.extension().string());
 }
 
-void requireExtension(const std::filesystem::path& path,
-                      const std::vector<std::string>& extensions) {
+void requireExtension(const fs::path& path, const std::vector<std::string>& extensions) {
     if (std::find(extensions.begin(), extensions.end(), extensionOf(path)) != extensions.end()) {
         return;
     }
+    std::error_code ignored;
+    const fs::file_status status = fs::status(path, ignored);
+    const bool stream =
+        fs::is_character_file(status) || fs::is_fifo(status) || path.string().starts_with("/dev/");
+    if (stream && extensions.size() == 1) return;
     throw Error(ErrorKind::Usage, "option --output is '" + path.string() +
                                       "'; expected a name that ends in " +
                                       joined(extensions, " or "));

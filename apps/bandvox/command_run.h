@@ -21,8 +21,9 @@ namespace bandvox::app {
 /// One run of a command: what the shared options ask for.
 class CommandRun {
   public:
-    /// Throws Error(ErrorKind::Usage) for shared options out of range, Error(ErrorKind::Runtime)
-    /// if the statistics could not be written.
+    /// Throws Error(ErrorKind::Usage) for shared options out of range and if two of input, output
+    /// and statistics are the same file, Error(ErrorKind::Runtime) if the statistics could not be
+    /// written.
     explicit CommandRun(const CommandLine& line);
     ~CommandRun();
     CommandRun(const CommandRun&) = delete;
@@ -42,10 +43,9 @@ class CommandRun {
     /// Adds an entry to "counts" of the statistics.
     void count(const std::string& name, const nlohmann::json& value);
 
-    /// Lets `write` write to a path, and gives the result the name `target` unless the user wants
-    /// to stop; `output` was made for that name. Then finishes. The last step of a command.
-    void writeOutput(AtomicFile& output, const std::filesystem::path& target,
-                     const std::function<void(const std::filesystem::path&)>& write);
+    /// Lets `write` write to `output` and commits that, unless the user wants to stop or the
+    /// statistics cannot be written. Then finishes. The last step of a command.
+    void writeOutput(AtomicFile& output, const std::function<void(AtomicFile&)>& write);
 
     /// Writes the statistics if they are asked for. The last step of a command without output.
     void finish();
@@ -70,7 +70,8 @@ void writeResult(const std::string& text);
 /// The lower-case extension of a path, with the dot.
 std::string extensionOf(const std::filesystem::path& path);
 
-/// Throws Error(ErrorKind::Usage) unless `path`, given to --output, ends in one of `extensions`.
+/// Throws Error(ErrorKind::Usage) unless `path`, given to --output, ends in one of `extensions`, or
+/// is a device or a pipe and there is one extension only.
 void requireExtension(const std::filesystem::path& path,
                       const std::vector<std::string>& extensions);
 

@@ -3,6 +3,7 @@
 #include "command_run.h"
 #include "commands.h"
 #include "solid_input.h"
+#include "standard_streams.h"
 #include "volume_options.h"
 #include "words.h"
 
@@ -21,6 +22,8 @@
 namespace bandvox::app {
 namespace {
 
+constexpr int kLargestTile = 512;
+
 struct ConvertRequest {
     std::string input;
     std::filesystem::path output;
@@ -37,8 +40,9 @@ struct Solid {
 ConvertRequest parseConvert(const CommandLine& line) {
     ConvertRequest request;
     request.input = line.positional(0);
-    request.output = line.requiredText("output");
-    requireExtension(request.output, {".vdb"});
+    const std::string output = line.requiredText("output");
+    requireExtension(output, {".vdb"});
+    request.output = outputPath(output);
 
     DensityOptions& density = request.density;
     readSize(line, density.resolution, density.voxelSize);
@@ -46,7 +50,11 @@ ConvertRequest parseConvert(const CommandLine& line) {
         line.number("cutoff", {.low = 0.01, .high = 0.5}, density.filter.cutoff);
     density.filter.order = line.number("order", {.low = 1, .high = 64}, density.filter.order);
     density.tolerance = line.number("tolerance", {.low = 1e-6, .high = 0.05}, density.tolerance);
-    density.tile = line.wholeNumber("tile", 0, 1024, density.tile);
+    density.tile = line.wholeNumber("tile", 0, kLargestTile, density.tile);
+    if (density.tile % 2 != 0) {
+        throw Error(ErrorKind::Usage, "option --tile is '" + std::to_string(density.tile) +
+                                          "'; expected an even number");
+    }
     density.iso =
         line.number("iso", {.low = 0, .high = 1, .lowOpen = true, .highOpen = true}, density.iso);
     density.clamp = line.has("clamp");
@@ -129,7 +137,8 @@ const CommandTable& convertTable() {
                 {"tolerance", 0, "E", formatNumber(density.tolerance),
                  "Error of the density that is allowed, 1e-6 to 0.05.", filter},
                 {"tile", 0, "N", "chosen",
-                 "Side of the cube that is filtered at a time, in voxels.", filter},
+                 "Side of the cube that is filtered at a time, in voxels, even, at most 512.",
+                 filter},
                 {"clamp", 0, "", "", "Limit the density to 0 .. 1, which cuts off ringing.",
                  filter},
                 {"iso", 0, "D", formatNumber(density.iso),
@@ -163,9 +172,8 @@ void runConvert(const CommandLine& line) {
     sayResult(run, result);
     run.warn(result.warnings, ErrorKind::Result);
 
-    run.writeOutput(output, request.output, [&](const std::filesystem::path& path) {
-        writeVdb(path, {result.grid}, request.write);
-    });
+    run.writeOutput(output,
+                    [&](AtomicFile& file) { writeVdb(file, {result.grid}, request.write); });
 }
 
 }  // namespace bandvox::app

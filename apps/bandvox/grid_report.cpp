@@ -49,7 +49,7 @@ Json toJson(const openvdb::Metadata& metadata) {
 
 /// A JSON value as one would say it.
 std::string inWords(const Json& value) {
-    if (value.is_string()) return value.get<std::string>();
+    if (value.is_string()) return printable(value.get<std::string>());
     if (value.is_number_float()) return formatNumber(value.get<double>(), 8);
     if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
     if (value.is_array()) {
@@ -76,11 +76,11 @@ void appendBlock(std::string& out, const std::string& name, const Json& values) 
     if (values.empty()) return;
     out += "  " + name + '\n';
     for (const auto& [key, value] : values.items())
-        out += "    " + key + ": " + inWords(value) + '\n';
+        out += "    " + printable(key) + ": " + inWords(value) + '\n';
 }
 
 std::string gridInWords(const Json& grid) {
-    std::string out = "\ngrid '" + grid["name"].get<std::string>() + "'\n";
+    std::string out = "\ngrid '" + inWords(grid["name"]) + "'\n";
     appendLine(out, "class", inWords(grid["class"]));
     appendLine(
         out, "values",
@@ -144,8 +144,9 @@ nlohmann::ordered_json gridReport(const openvdb::GridBase& grid) {
 
 std::string reportInWords(const nlohmann::ordered_json& report) {
     const std::size_t count = report["grids"].size();
-    std::string out = report["file"].get<std::string>() + ": " +
-                      formatBytes(report["file_bytes"].get<std::int64_t>()) + ", " +
+    const Json& bytes = report["file_bytes"];
+    std::string out = inWords(report["file"]) + ": " +
+                      (bytes.is_null() ? "" : formatBytes(bytes.get<std::int64_t>()) + ", ") +
                       formatCount(static_cast<std::int64_t>(count), "grid", "grids") + '\n';
     for (const Json& grid : report["grids"]) out += gridInWords(grid);
     return out;

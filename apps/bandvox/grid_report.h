@@ -16,7 +16,8 @@ namespace bandvox::app {
 /// metadata (all others).
 nlohmann::ordered_json gridReport(const openvdb::GridBase& grid);
 
-/// The report of a file {file, file_bytes, grids: [gridReport...]} for people.
+/// The report of a file {file, file_bytes (null if it has no size), grids: [gridReport...]} for
+/// people, with control characters in names and texts written out.
 std::string reportInWords(const nlohmann::ordered_json& report);
 
 }  // namespace bandvox::app

@@ -3,9 +3,8 @@
 #include "command_run.h"
 #include "commands.h"
 #include "grid_report.h"
-#include "words.h"
+#include "standard_streams.h"
 
-#include <bandvox/grid/density_grid.h>
 #include <bandvox/source/read_mesh.h>
 #include <bandvox/source/shapes.h>
 
@@ -33,7 +32,7 @@ const CommandTable& infoTable() {
         "Tells of each grid in a .vdb file, of any type: its size in the world and in memory, and "
         "its metadata. For a density made by bandvox that includes how it was filtered and the "
         "error that was measured.",
-        {{"INPUT", "A .vdb file."}},
+        {{"INPUT", "A .vdb file; stdin.vdb is the standard input."}},
         {{"json", 0, "", "", "Print JSON instead of words.", "Output"}},
         {
             {"bandvox info bunny.vdb", "In words."},
@@ -50,13 +49,16 @@ void runInfo(const CommandLine& line) {
     openvdb::GridPtrVec grids;
     {
         const ProgressStage stage(run.progress(), "read", 0);
-        grids = readVdb(input);
+        grids = readGrids(input);
     }
     run.progress().throwIfInterrupted();
 
     nlohmann::ordered_json report;
     report["file"] = input;
-    report["file_bytes"] = std::filesystem::file_size(input);
+    report["file_bytes"] = nullptr;
+    if (!isStandardInput(input) && std::filesystem::is_regular_file(input)) {
+        report["file_bytes"] = std::filesystem::file_size(input);
+    }
     report["grids"] = nlohmann::ordered_json::array();
     for (const auto& grid : grids) report["grids"].push_back(gridReport(*grid));
     run.count("grids", grids.size());

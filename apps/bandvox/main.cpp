@@ -5,6 +5,7 @@
 #include "command_run.h"
 #include "commands.h"
 #include "interrupt.h"
+#include "words.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/version.h>
@@ -81,7 +82,7 @@ int fail(const std::string& message, int status) {
     std::string oneLine = message;
     std::replace(oneLine.begin(), oneLine.end(), '\n', ' ');
     while (oneLine.ends_with(' ')) oneLine.pop_back();
-    std::fprintf(stderr, "bandvox: error: %s\n", oneLine.c_str());
+    std::fprintf(stderr, "bandvox: error: %s\n", printable(oneLine).c_str());
     return status;
 }
 

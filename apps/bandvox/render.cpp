@@ -2,9 +2,9 @@
 
 #include "command_run.h"
 #include "commands.h"
+#include "standard_streams.h"
 #include "words.h"
 
-#include <bandvox/grid/density_grid.h>
 #include <bandvox/render/density_to_image.h>
 #include <bandvox/render/image.h>
 #include <bandvox/render/shading.h>
@@ -24,6 +24,7 @@ constexpr int kMostPixels = 65536;  // along a side
 constexpr int kMostSamples = 1024;
 const Range kPositive{.low = 0, .lowOpen = true};
 const Range kColor{.low = 0};
+const Range kPlace{.low = -1e30, .high = 1e30};  // the squares of more are not finite
 
 struct RenderRequest {
     std::string input;
@@ -38,10 +39,10 @@ CameraOptions parseCamera(const CommandLine& line) {
     camera.projection = std::array{
         Projection::Perspective,
         Projection::Orthographic}[line.choice("camera", {"perspective", "orthographic"}, 0)];
-    camera.eye = line.vector("eye");
-    camera.lookat = line.vector("lookat");
-    camera.up = line.vector("up").value_or(camera.up);
-    camera.from = line.vector("from").value_or(camera.from);
+    camera.eye = line.vector("eye", kPlace);
+    camera.lookat = line.vector("lookat", kPlace);
+    camera.up = line.vector("up", kPlace);
+    camera.from = line.vector("from", kPlace).value_or(camera.from);
     camera.focal = line.number("focal", kPositive, camera.focal);
     camera.aperture = line.number("aperture", kPositive, camera.aperture);
     camera.frame = line.number("frame", {.low = 0}, camera.frame);
@@ -64,10 +65,11 @@ RenderRequest parseRender(const CommandLine& line) {
     options.camera = parseCamera(line);
     options.shading = static_cast<Shading>(line.choice("shading", shadingNames(), 0));
     if (line.has("iso")) options.iso = line.number("iso", {}, 0);
-    options.light = line.vector("light").value_or(options.light);
+    options.light = line.vector("light", kPlace).value_or(options.light);
     options.color = line.vector("color", kColor).value_or(options.color);
     options.ambient = line.number("ambient", {.low = 0, .high = 1}, options.ambient);
     options.background = line.vector("background", kColor);
+    requireValid(options);
     return request;
 }
 
@@ -133,7 +135,7 @@ const CommandTable& renderTable() {
             "to the band-limited density that the grid stands for, and the normal is its "
             "gradient, so the picture shows no voxels. An .exr also holds depth (Z), normals (N) "
             "and positions (P).",
-            {{"INPUT", "A .vdb file."}},
+            {{"INPUT", "A .vdb file; stdin.vdb is the standard input."}},
             {
                 {"output", 'o', "FILE", "", "The .png or .exr file to write. Needed.", picture},
                 {"res", 0, "WxH",
@@ -146,7 +148,7 @@ const CommandTable& renderTable() {
                 {"camera", 0, "KIND", "perspective", "perspective or orthographic.", view},
                 {"eye", 0, "X,Y,Z", "chosen", "Where the camera is, world.", view},
                 {"lookat", 0, "X,Y,Z", "the middle", "What it looks at, world.", view},
-                {"up", 0, "X,Y,Z", vector(camera.up), "What is up in the picture.", view},
+                {"up", 0, "X,Y,Z", "0,1,0, or z along y", "What is up in the picture.", view},
                 {"from", 0, "X,Y,Z", vector(camera.from),
                  "Direction from the object to the camera, if --eye is not given.", view},
                 {"focal", 0, "MM", formatNumber(camera.focal), "Focal length in mm (perspective).",
@@ -190,7 +192,7 @@ void runRender(const CommandLine& line) {
     openvdb::GridPtrVec grids;
     {
         const ProgressStage stage(run.progress(), "read", 0);
-        grids = readVdb(request.input);
+        grids = readGrids(request.input);
     }
     const openvdb::FloatGrid::Ptr grid = chooseGrid(grids, request.grid, request.input);
     grids.clear();
@@ -206,8 +208,7 @@ void runRender(const CommandLine& line) {
     run.count("rays", result.rays);
     run.count("hits", result.hits);
 
-    run.writeOutput(output, request.output,
-                    [&](const std::filesystem::path& path) { writeImage(path, result.image); });
+    run.writeOutput(output, [&](AtomicFile& file) { writeImage(file, result.image); });
 }
 
 }  // namespace bandvox::app

@@ -25,7 +25,7 @@ OptionEntry voxelSizeEntry() {
 }
 
 OptionEntry vdbOutputEntry() {
-    return {"output", 'o', "FILE", "", "The .vdb file to write. Needed.", "Output"};
+    return {"output", 'o', "FILE", "", "The .vdb file to write; stdout.vdb is the standard output. Needed.", "Output"};
 }
 
 OptionEntry compressionEntry() {

@@ -3,6 +3,7 @@
 #include "command_run.h"
 #include "commands.h"
 #include "solid_input.h"
+#include "standard_streams.h"
 #include "volume_options.h"
 #include "words.h"
 
@@ -35,8 +36,9 @@ struct VoxelizedSolid {
 VoxelizeRequest parseVoxelize(const CommandLine& line) {
     VoxelizeRequest request;
     request.input = line.positional(0);
-    request.output = line.requiredText("output");
-    requireExtension(request.output, {".vdb"});
+    const std::string output = line.requiredText("output");
+    requireExtension(output, {".vdb"});
+    request.output = outputPath(output);
     readSize(line, request.voxels.resolution, request.voxels.voxelSize);
     request.write.compression = readCompression(line);
     return request;
@@ -103,8 +105,8 @@ void runVoxelize(const CommandLine& line) {
     sayResult(run, solid);
     run.warn(solid.result.warnings, ErrorKind::Result);
 
-    run.writeOutput(output, request.output, [&](const std::filesystem::path& path) {
-        writeVdb(path, {solid.result.grid}, request.write);
+    run.writeOutput(output, [&](AtomicFile& file) {
+        writeVdb(file, {solid.result.grid}, request.write);
     });
 }
 

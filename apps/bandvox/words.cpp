@@ -6,6 +6,15 @@
 #include <cstdio>
 
 namespace bandvox::app {
+namespace {
+
+std::string hexadecimal(unsigned char byte) {
+    std::array<char, 8> buffer{};
+    std::snprintf(buffer.data(), buffer.size(), "\\x%02x", byte);
+    return buffer.data();
+}
+
+}  // namespace
 
 std::string formatNumber(double value, int digits) {
     std::array<char, 64> buffer{};
@@ -41,6 +50,28 @@ std::string joined(const std::vector<std::string>& strings, const std::string& s
         all += strings[i];
     }
     return all;
+}
+
+std::string printable(const std::string& text) {
+    std::string shown;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto c = static_cast<unsigned char>(text[i]);
+        const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
+        if (c == '\n') {
+            shown += "\\n";
+        } else if (c == '\t') {
+            shown += "\\t";
+        } else if (c < 0x20 || c == 0x7f) {
+            shown += hexadecimal(c);
+        } else if (c == 0xc2 && next >= 0x80 && next < 0xa0) {
+            // The second set of control characters, in UTF-8.
+            shown += hexadecimal(next);
+            ++i;
+        } else {
+            shown += text[i];
+        }
+    }
+    return shown;
 }
 
 std::string lowerCase(std::string text) {

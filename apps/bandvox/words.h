@@ -24,6 +24,10 @@ std::string formatCount(std::int64_t count, const std::string& one, const std::s
 /// All strings in one, with `separator` between them.
 std::string joined(const std::vector<std::string>& strings, const std::string& separator);
 
+/// The text with its control characters written out, as in "two\nlines": a name from a file must
+/// neither break a line nor steer a terminal.
+std::string printable(const std::string& text);
+
 /// ASCII letters in lower case.
 std::string lowerCase(std::string text);
 

@@ -156,6 +156,40 @@ TEST_F(BadInput, OutputThatCannotBeWritten) {
                   {"none/s.json"});
 }
 
+TEST_F(BadInput, FilesThatAreTheSame) {
+    writeText(mFolder / "cube.obj", cubeObj());
+    std::filesystem::create_symlink("y.vdb", mFolder / "link");
+    std::filesystem::create_hard_link(mFolder / "cube.obj", mFolder / "other.obj");
+    const std::string outside = "../" + mFolder.path().filename().string() + "/y.vdb";
+    for (const std::string& stats : Names{"y.vdb", "./y.vdb", "link", outside}) {
+        expectFailure({"convert", "cube.obj", "-o", "y.vdb", "--stats", stats}, 2,
+                      {"--stats", "'" + stats + "'", "--output"});
+    }
+    for (const std::string stats : {"cube.obj", "other.obj"}) {
+        expectFailure({"convert", "cube.obj", "-o", "y.vdb", "--stats", stats}, 2,
+                      {"--stats", "'" + stats + "'", "INPUT"});
+    }
+    EXPECT_EQ(readText(mFolder / "cube.obj"), cubeObj());
+    expectFailure({"info", "cube.vdb", "--stats", "cube.vdb"}, 2, {"INPUT"});
+    expectFailure({"convert", "cube.obj", "-o", "stdout.vdb", "--stats", "/dev/stdout"}, 2,
+                  {"--stats"});
+    expectFailure({"convert", "cube.obj", "-o", "stdin.vdb"}, 2, {"stdin.vdb"});
+}
+
+TEST_F(BadInput, StatisticsThatCannotBeWritten) {
+    // The result is whole, but there would be no record of it.
+    std::filesystem::create_symlink("/dev/full", mFolder / "full");
+    expectFailure({"convert", "shape:cube", "-o", "out.vdb", "-r", "16", "--stats", "full"}, 1,
+                  {"full"});
+    writeSeveralGrids(mFolder / "several.vdb");
+    const RunResult result =
+        runBandvox({"info", "several.vdb", "--stats", "s.json"},
+                   {.folder = mFolder.path(), .standardOutput = "/dev/null", .largestFile = 100});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_NE(result.err.find("'s.json'"), std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find(".bandvox-"), std::string::npos) << result.err;
+}
+
 TEST_F(BadInput, ReadOnlyFolder) {
     const auto folder = mFolder / "locked";
     std::filesystem::create_directory(folder);
@@ -183,6 +217,9 @@ TEST_F(BadInput, DamagedVdb) {
     writeText(mFolder / "cut.vdb", good.substr(0, good.size() / 2));
     expectFailure({"info", "cut.vdb"}, 3, {"cut.vdb"});
     expectFailure({"render", "cut.vdb", "-o", "out.png"}, 3, {"cut.vdb"});
+    expectFailure({"info", "stdin.vdb"}, 3, {"standard input"});
+    expectFailure({"info", "stdin.vdb"}, 3, {"standard input"},
+                  {.standardInput = (mFolder / "cut.vdb").string()});
 }
 
 TEST_F(BadInput, GridThatIsNotThere) {

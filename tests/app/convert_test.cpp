@@ -8,6 +8,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <openvdb/openvdb.h>
+#include <sys/stat.h>
+
+#include <thread>
 
 namespace bandvox::app_test {
 namespace {
@@ -128,6 +131,63 @@ TEST(Convert, ReplacesAnOlderOutput) {
     ASSERT_EQ(convertIn(folder, {"shape:cube", "-o", "cube.vdb", "-r", "16"}).status, 0);
     EXPECT_TRUE(readDensity(folder / "cube.vdb"));
     EXPECT_EQ(folder.contents(), Names{"cube.vdb"});
+}
+
+TEST(Convert, WritesToTheStandardOutput) {
+    const TemporaryFolder folder;
+    const RunResult result = convertIn(folder, {"shape:cube", "-o", "stdout.vdb", "-r", "16"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(folder.contents(), Names{});
+    writeText(folder / "piped.vdb", result.out);
+    EXPECT_NEAR(densityIntegral(*readDensity(folder / "piped.vdb")), 8, 8e-4);
+
+    const RunResult full = runBandvox({"convert", "shape:cube", "-o", "stdout.vdb", "-r", "16"},
+                                      {.folder = folder.path(), .standardOutput = "/dev/full"});
+    EXPECT_EQ(full.status, 1) << full.err;
+    const RunResult broken = runBandvox({"convert", "shape:torus", "-o", "stdout.vdb", "-r", "64"},
+                                        {.folder = folder.path(), .standardOutputClosed = true});
+    EXPECT_EQ(broken.status, 1) << broken.err;
+}
+
+TEST(Convert, WritesDevicesAndPipesInPlace) {
+    const TemporaryFolder folder;
+    std::filesystem::create_symlink("/dev/null", folder / "null");
+    ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+    std::string received;
+    std::thread reader([&] { received = readText(folder / "pipe"); });
+    const RunResult piped =
+        convertIn(folder, {"shape:cube", "-o", "null", "-r", "16", "--stats", "pipe"});
+    reader.join();
+    EXPECT_EQ(piped.status, 0) << piped.err;
+    EXPECT_EQ(nlohmann::json::parse(received).at("command"), "convert");
+    const RunResult printed =
+        convertIn(folder, {"shape:cube", "-o", "/dev/null", "-r", "16", "--stats", "/dev/stdout"});
+    EXPECT_EQ(printed.status, 0) << printed.err;
+    EXPECT_EQ(nlohmann::json::parse(printed.out).at("command"), "convert");
+    EXPECT_EQ(folder.contents(), (Names{"null", "pipe"}));
+    EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
+    EXPECT_TRUE(std::filesystem::is_character_file(folder / "null"));
+}
+
+TEST(Convert, FollowsLinksAndKeepsModes) {
+    const TemporaryFolder folder;
+    writeText(folder / "real.vdb", "older");
+    std::filesystem::permissions(folder / "real.vdb", std::filesystem::perms(0600));
+    std::filesystem::create_symlink("real.vdb", folder / "link.vdb");
+    ASSERT_EQ(convertIn(folder, {"shape:cube", "-o", "link.vdb", "-r", "16"}).status, 0);
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.vdb"));
+    EXPECT_TRUE(readDensity(folder / "real.vdb"));
+    EXPECT_EQ(std::filesystem::status(folder / "real.vdb").permissions(),
+              std::filesystem::perms(0600));
+}
+
+TEST(Convert, TakesTheLongestNames) {
+    const TemporaryFolder folder;
+    std::string name(251, 'n');
+    name += ".vdb";
+    const RunResult result = convertIn(folder, {"shape:cube", "-o", name, "-r", "16"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(folder.contents(), Names{name});
 }
 
 TEST(Convert, QuietSaysNothing) {

@@ -126,7 +126,7 @@ TEST(Usage, ReadsNumbersStrictly) {
     convert("--order", "65");
     convert("--tolerance", "1e-7");
     convert("--tolerance", "0.1");
-    convert("--tile", "-1");
+    for (const char* value : {"-1", "17", "514", "1024"}) convert("--tile", value);
     convert("--iso", "0");
     convert("--iso", "1");
     convert("--compression", "lzma");

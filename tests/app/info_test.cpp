@@ -82,6 +82,43 @@ TEST(Info, TakesGridsOfAnyType) {
     EXPECT_NE(words.out.find("empty"), std::string::npos);
 }
 
+TEST(Info, ReadsTheStandardInput) {
+    const TemporaryFolder folder;
+    writeSeveralGrids(folder / "several.vdb");
+    const RunResult result = runProgram(
+        {"/bin/sh", "-c", "cat several.vdb | \"$0\" info stdin.vdb --json", BANDVOX_EXECUTABLE},
+        {.folder = folder.path()});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const Json report = Json::parse(result.out);
+    EXPECT_EQ(report.at("grids").size(), 4u);
+    EXPECT_TRUE(report.at("file_bytes").is_null());
+    const RunResult words =
+        runBandvox({"info", "stdin.vdb"},
+                   {.folder = folder.path(), .standardInput = (folder / "several.vdb").string()});
+    EXPECT_EQ(words.status, 0) << words.err;
+    EXPECT_EQ(countLines(words.out, "stdin.vdb: 4 grids"), 1) << words.out;
+}
+
+TEST(Info, WritesControlCharactersOut) {
+    const TemporaryFolder folder;
+    writeOddlyNamedGrid(folder / "odd.vdb");
+    const RunOptions here{.folder = folder.path()};
+    const std::string shown = "'two\\nlines\\x1b[31m'";
+    const RunResult info = runBandvox({"info", "odd.vdb"}, here);
+    EXPECT_NE(info.out.find(shown), std::string::npos) << info.out;
+    const RunResult drawn =
+        runBandvox({"render", "odd.vdb", "-o", "odd.png", "--res", "8x8"}, here);
+    EXPECT_EQ(drawn.status, 0) << drawn.err;
+    EXPECT_EQ(countLines(drawn.err, ""), 3) << drawn.err;
+    EXPECT_NE(drawn.err.find(shown), std::string::npos) << drawn.err;
+    const RunResult failed =
+        runBandvox({"render", "odd.vdb", "-o", "odd.png", "--grid", "none"}, here);
+    EXPECT_EQ(countLines(failed.err, ""), 1) << failed.err;
+    for (const RunResult& result : {info, drawn, failed}) {
+        EXPECT_EQ((result.out + result.err).find('\x1b'), std::string::npos);
+    }
+}
+
 TEST(Info, ReaderThatGoesAwayIsNoFailure) {
     const TemporaryFolder folder;
     writeSeveralGrids(folder / "several.vdb");

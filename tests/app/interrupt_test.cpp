@@ -3,6 +3,7 @@
 #include "run_command.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 namespace bandvox::app_test {
 namespace {
@@ -61,6 +62,22 @@ TEST(Interrupt, RenderLeavesNothing) {
     EXPECT_TRUE(result.signalSent);
     EXPECT_EQ(result.status, 130) << result.err;
     EXPECT_EQ(folder.contents(), Names{"t.vdb"});
+}
+
+TEST(Interrupt, SecondSignalEndsAtOnceAndLeavesNothing) {
+    // Nobody reads the pipe: with its output written, the command waits until somebody does.
+    const TemporaryFolder folder;
+    ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+    RunOptions options{.folder = folder.path()};
+    options.signalTimes = 2;
+    options.signalWhen = [&](const std::string&) {
+        return folder.contents().size() > 1 ? SIGINT : 0;
+    };
+    const RunResult result = runBandvox(
+        {"convert", "shape:cube", "-o", "out.vdb", "-r", "16", "--stats", "pipe"}, options);
+    EXPECT_TRUE(result.signalSent);
+    EXPECT_EQ(result.status, 128 + SIGINT) << result.err;
+    EXPECT_EQ(folder.contents(), Names{"pipe"});
 }
 
 TEST(Interrupt, IgnoredSignalStaysIgnored) {

@@ -44,7 +44,8 @@ TEST(Readme, RunnableBlocksRun) {
         EXPECT_EQ(result.status, 0) << block << result.err;
     }
     for (const char* name :
-         {"bunny.vdb", "bunny.png", "bunny.exr", "bunny.json", "sharp.vdb", "voxels.png"}) {
+         {"bunny.vdb", "bunny.png", "bunny.exr", "bunny.json", "sharp.vdb", "voxels.png",
+          "piped.png"}) {
         EXPECT_TRUE(fs::exists(folder / name)) << name;
     }
 }

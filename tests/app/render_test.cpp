@@ -101,9 +101,41 @@ TEST_F(Render, NothingSeenIsAFailure) {
     EXPECT_EQ(mFolder.contents(), Names{"s.vdb"});
 }
 
+TEST_F(Render, ReadsTheStandardInput) {
+    const RunResult result =
+        runBandvox({"render", "stdin.vdb", "-o", "s.png", "--res", "16x16"},
+                   {.folder = mFolder.path(), .standardInput = (mFolder / "s.vdb").string()});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(mFolder.contents(), (Names{"s.png", "s.vdb"}));
+}
+
+TEST_F(Render, SeesFromFarAwayAndFromAbove) {
+    for (const Names& arguments :
+         {Names{"--eye", "0,1,1e11"}, Names{"--from", "0,1,0"}, Names{"--from", "0,-1,0"}}) {
+        Names all{"-o", "s.png", "--res", "4x4", "--camera", "orthographic"};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        const RunResult result = render(all);
+        EXPECT_EQ(result.status, 0) << arguments[1] << result.err;
+    }
+}
+
+TEST_F(Render, JudgesTheViewBeforeItReads) {
+    for (const Names& arguments :
+         {Names{"--up", "0,0,0"}, Names{"--light", "0,0,0"}, Names{"--eye", "1e200,0,0"},
+          Names{"--up", "0,2,0", "--from", "0,1,0"},
+          Names{"--eye", "1,1,1", "--lookat", "1,1,1"}}) {
+        Names all{"render", "none.vdb", "-o", "s.png"};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        const RunResult result = runBandvox(all, {.folder = mFolder.path()});
+        EXPECT_EQ(result.status, 2) << arguments[0] << result.err;
+        EXPECT_NE(result.err.find(arguments[0].substr(2)), std::string::npos) << result.err;
+    }
+}
+
 TEST_F(Render, ViewThatIsNoneIsWrongUsage) {
-    for (const Names& arguments : {Names{"--eye", "1,1,1", "--lookat", "1,1,1"},
-                                   Names{"--up", "0,0,0"}, Names{"--from", "0,0,0"}}) {
+    for (const Names& arguments :
+         {Names{"--eye", "1,1,1", "--lookat", "1,1,1"}, Names{"--eye", "0,0,0"},
+          Names{"--up", "0,0,0"}, Names{"--from", "0,0,0"}}) {
         Names all{"-o", "s.png", "--res", "8x8"};
         all.insert(all.end(), arguments.begin(), arguments.end());
         const RunResult result = render(all);

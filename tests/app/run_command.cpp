@@ -33,7 +33,7 @@ void redirect(int descriptor, const std::string& path, int flags) {
 [[noreturn]] void becomeProgram(const std::vector<std::string>& arguments,
                                 const RunOptions& options, const fs::path& out,
                                 const fs::path& err) {
-    redirect(STDIN_FILENO, "/dev/null", O_RDONLY);
+    redirect(STDIN_FILENO, options.standardInput.value_or("/dev/null"), O_RDONLY);
     redirect(STDERR_FILENO, err, O_WRONLY | O_CREAT);
     if (options.standardOutputClosed) {
         int ends[2];
@@ -94,11 +94,14 @@ RunResult runProgram(const std::vector<std::string>& arguments, const RunOptions
     RunResult result;
     int status = 0;
     if (options.signalWhen) {
+        int signal = 0;
+        int sent = 0;
         while (waitpid(child, &status, WNOHANG) == 0) {
-            const int signal = result.signalSent ? 0 : options.signalWhen(readText(err));
-            if (signal != 0) {
+            if (signal == 0) signal = options.signalWhen(readText(err));
+            if (signal != 0 && sent < options.signalTimes) {
                 kill(child, signal);
                 result.signalSent = true;
+                ++sent;
             }
             std::this_thread::sleep_for(kPollInterval);
         }

@@ -30,12 +30,14 @@ class TemporaryFolder {
 /// How a program is run.
 struct RunOptions {
     std::filesystem::path folder = "/";         ///< working folder
+    std::optional<std::string> standardInput;   ///< file to use instead of nothing
     std::optional<std::string> standardOutput;  ///< file to use instead of collecting the output
     bool standardOutputClosed = false;          ///< its reader has gone away
     std::optional<long> largestFile;            ///< bytes; writing more fails, as on a full disk
     /// Called again and again while the program runs, with what it has said on the standard error
-    /// so far; a signal that it returns is sent, once.
+    /// so far; a signal that it returns is sent, `signalTimes` times, shortly after each other.
     std::function<int(const std::string& said)> signalWhen;
+    int signalTimes = 1;
 };
 
 /// What a program did.

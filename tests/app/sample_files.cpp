@@ -149,4 +149,12 @@ void writeSeveralGrids(const std::filesystem::path& path) {
     openvdb::io::File(path.string()).write(grids);
 }
 
+void writeOddlyNamedGrid(const std::filesystem::path& path) {
+    openvdb::initialize();
+    auto grid = openvdb::FloatGrid::create(0);
+    grid->setName("two\nlines\x1b[31m");
+    grid->fill(openvdb::CoordBBox({0, 0, 0}, {9, 9, 9}), 1.0f);
+    openvdb::io::File(path.string()).write({grid});
+}
+
 }  // namespace bandvox::app_test

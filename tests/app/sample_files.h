@@ -20,4 +20,8 @@ std::string cubeGlb();
 /// voxel each, and an empty bool grid "mask".
 void writeSeveralGrids(const std::filesystem::path& path);
 
+/// Writes a .vdb with a small float grid that can be drawn; its name has a line break and a code
+/// that colours a terminal.
+void writeOddlyNamedGrid(const std::filesystem::path& path);
+
 }  // namespace bandvox::app_test

@@ -2,10 +2,14 @@
 #include <bandvox/core/error.h>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/types.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <thread>
 
 namespace bandvox {
 namespace {
@@ -26,6 +30,7 @@ class AtomicFileTest : public testing::Test {
     static void write(const fs::path& path, const std::string& text) {
         std::ofstream(path) << text;
     }
+    static void fill(AtomicFile& file, const std::string& text) { file.open() << text; }
     static std::string read(const fs::path& path) {
         std::ifstream file(path);
         return {std::istreambuf_iterator<char>(file), {}};
@@ -40,9 +45,9 @@ class AtomicFileTest : public testing::Test {
 TEST_F(AtomicFileTest, CommitGivesTheTargetItsContent) {
     write(folder / "a.vdb", "old");
     AtomicFile file(folder / "a.vdb");
+    fill(file, "new");
     EXPECT_EQ(file.temporary().extension(), ".vdb");
     EXPECT_EQ(file.temporary().parent_path(), folder);
-    write(file.temporary(), "new");
     EXPECT_EQ(read(folder / "a.vdb"), "old");
     file.commit();
     EXPECT_EQ(read(folder / "a.vdb"), "new");
@@ -52,18 +57,100 @@ TEST_F(AtomicFileTest, CommitGivesTheTargetItsContent) {
 TEST_F(AtomicFileTest, WithoutCommitNothingIsLeft) {
     write(folder / "a.vdb", "old");
     {
-        const AtomicFile file(folder / "a.vdb");
-        write(file.temporary(), "half");
+        AtomicFile file(folder / "a.vdb");
+        fill(file, "half");
         EXPECT_EQ(countFiles(), 2);
     }
     EXPECT_EQ(read(folder / "a.vdb"), "old");
     EXPECT_EQ(countFiles(), 1);
 }
 
+TEST_F(AtomicFileTest, MakesNothingBeforeItIsOpened) {
+    const AtomicFile file(folder / "a.vdb");
+    EXPECT_EQ(countFiles(), 0);
+}
+
 TEST_F(AtomicFileTest, TwoFilesOfOneTargetDoNotMeet) {
-    const AtomicFile a(folder / "a.vdb");
-    const AtomicFile b(folder / "a.vdb");
+    AtomicFile a(folder / "a.vdb");
+    AtomicFile b(folder / "a.vdb");
+    fill(a, "a");
+    fill(b, "b");
     EXPECT_NE(a.temporary(), b.temporary());
+    EXPECT_EQ(read(a.temporary()), "a");
+}
+
+TEST_F(AtomicFileTest, TakesTheLongestNames) {
+    std::string name(251, 'n');
+    name += ".vdb";
+    const fs::path target = folder / name;
+    AtomicFile file(target);
+    fill(file, "long");
+    file.commit();
+    EXPECT_EQ(read(target), "long");
+}
+
+TEST_F(AtomicFileTest, WritesWhatALinkLeadsTo) {
+    fs::create_directory(folder / "far");
+    write(folder / "far" / "a.vdb", "old");
+    fs::create_symlink("far/a.vdb", folder / "link.vdb");
+    fs::create_symlink("far/b.vdb", folder / "dangling.vdb");
+    for (const char* name : {"link.vdb", "dangling.vdb"}) {
+        AtomicFile file(folder / name);
+        fill(file, name);
+        EXPECT_EQ(file.temporary().parent_path(), folder / "far");
+        file.commit();
+        EXPECT_TRUE(fs::is_symlink(folder / name));
+    }
+    EXPECT_EQ(read(folder / "far" / "a.vdb"), "link.vdb");
+    EXPECT_EQ(read(folder / "far" / "b.vdb"), "dangling.vdb");
+    fs::create_symlink("ring.vdb", folder / "ring.vdb");
+    EXPECT_THROW(AtomicFile(folder / "ring.vdb"), Error);
+}
+
+TEST_F(AtomicFileTest, KeepsTheModeOfWhatItReplaces) {
+    for (const auto mode : {fs::perms(0600), fs::perms(0444), fs::perms(0755)}) {
+        write(folder / "a.vdb", "old");
+        fs::permissions(folder / "a.vdb", mode);
+        AtomicFile file(folder / "a.vdb");
+        fill(file, "new");
+        file.commit();
+        EXPECT_EQ(fs::status(folder / "a.vdb").permissions(), mode);
+        fs::remove(folder / "a.vdb");
+    }
+}
+
+TEST_F(AtomicFileTest, WritesDevicesAndPipesInPlace) {
+    fs::create_symlink("/dev/null", folder / "null.vdb");
+    AtomicFile null(folder / "null.vdb");
+    EXPECT_TRUE(null.inPlace());
+    fill(null, "gone");
+    null.commit();
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+    EXPECT_TRUE(fs::is_symlink(folder / "null.vdb"));
+
+    ASSERT_EQ(mkfifo((folder / "pipe.vdb").c_str(), 0600), 0);
+    std::string received;
+    std::thread reader([&] { received = read(folder / "pipe.vdb"); });
+    {
+        AtomicFile pipe(folder / "pipe.vdb");
+        EXPECT_TRUE(pipe.inPlace());
+        fill(pipe, "sent");
+        pipe.commit();
+    }
+    reader.join();
+    EXPECT_EQ(received, "sent");
+    EXPECT_TRUE(fs::is_fifo(folder / "pipe.vdb"));
+}
+
+TEST_F(AtomicFileTest, RemovesTemporariesForAHandlerOfSignals) {
+    AtomicFile a(folder / "a.vdb");
+    AtomicFile b(folder / "b.vdb");
+    fill(a, "half");
+    fill(b, "whole");
+    b.commit();
+    AtomicFile::removeTemporaries();
+    EXPECT_EQ(countFiles(), 1);
+    EXPECT_EQ(read(folder / "b.vdb"), "whole");
 }
 
 TEST_F(AtomicFileTest, RefusesTargetsThatCannotBe) {

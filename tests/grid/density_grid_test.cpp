@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <random>
 #include <string>
 
 namespace bandvox {
@@ -151,6 +152,41 @@ TEST_F(DensityGridFile, TruncatedFilesAreRefused) {
         writeVdb(path, {sampleGrid()});
         fs::resize_file(path, cut);
         EXPECT_EQ(kindOfReadError(), ErrorKind::Input) << cut << " of " << size;
+    }
+}
+
+// Lengths that the middle of a file does not mean are no overruns.
+TEST_F(DensityGridFile, FilesThatGoOnWithRubbishAreRefused) {
+    auto grid = openvdb::FloatGrid::create(0.0F);
+    std::mt19937 random(5);
+    for (int i = 0; i < 60000; ++i) {
+        grid->tree().setValue(Coord(i % 40, i / 40 % 40, i / 1600),
+                              1e-6F * static_cast<float>(random() % 1000000));
+    }
+    writeVdb(path, {grid});
+    const auto size = static_cast<int>(fs::file_size(path));
+    for (int cut = size / 4; cut < size - 1000; cut += size / 16) {
+        writeVdb(path, {grid});
+        fs::resize_file(path, cut);
+        std::ofstream file(path, std::ios::binary | std::ios::app);
+        for (int i = 0; i < 400000; ++i) file.put(static_cast<char>(random()));
+        file.close();
+        EXPECT_EQ(kindOfReadError(), ErrorKind::Input) << cut << " of " << size;
+    }
+}
+
+TEST_F(DensityGridFile, ComesFromAStreamThatCannotGoBack) {
+    writeVdb(path, {sampleGrid()});
+    std::ifstream file(path, std::ios::binary);
+    const openvdb::GridPtrVec grids = readVdb(file, "a stream");
+    ASSERT_EQ(grids.size(), 1U);
+    EXPECT_EQ(grids[0]->activeVoxelCount(), sampleGrid()->activeVoxelCount());
+    try {
+        readVdb(file, "a stream");
+        FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::Input);
+        EXPECT_NE(std::string(error.what()).find("a stream"), std::string::npos);
     }
 }
 

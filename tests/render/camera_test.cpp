@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -130,10 +131,52 @@ TEST(Camera, FramesAroundALookatOfTheUsers) {
     }
 }
 
+TEST(Camera, SeesFromStraightAboveAndBelow) {
+    for (const double side : {1.0, -1.0}) {
+        CameraOptions options;
+        options.from = Vec3d(0, 3 * side, 0);
+        const Camera camera(options, 10, 10, kBox);
+        EXPECT_TRUE(camera.forward().eq(Vec3d(0, -side, 0)));
+        EXPECT_TRUE(camera.right().eq(Vec3d(1, 0, 0)));
+        EXPECT_TRUE(camera.upward().eq(Vec3d(0, 0, -side)));
+    }
+}
+
+TEST(Camera, JudgesWhatItCanWithoutAnObject) {
+    CameraOptions options;
+    EXPECT_NO_THROW(requireValid(options));
+    options.eye = Vec3d(1, 1, 1);
+    EXPECT_NO_THROW(requireValid(options));
+    options.lookat = options.eye;
+    EXPECT_THROW(requireValid(options), Error);
+    options.lookat = Vec3d(1, 5, 1);
+    EXPECT_NO_THROW(requireValid(options));
+    options.up = Vec3d(0, -1, 0);
+    EXPECT_THROW(requireValid(options), Error);
+}
+
+TEST(Camera, SaysWhatIsWrongWithAnEye) {
+    CameraOptions middle;
+    middle.eye = kBox.getCenter();
+    CameraOptions huge;
+    huge.eye = Vec3d(1e200, 0, 0);
+    const auto said = [](const CameraOptions& options) -> std::string {
+        try {
+            Camera(options, 10, 10, kBox);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "nothing";
+    };
+    EXPECT_NE(said(middle).find("middle of the object"), std::string::npos) << said(middle);
+    EXPECT_NE(said(huge).find("eye"), std::string::npos) << said(huge);
+}
+
 TEST(Camera, RefusesWhatDefinesNoView) {
     std::vector<CameraOptions> bad(10);
     bad[0].eye = bad[0].lookat = Vec3d(1, 1, 1);
     bad[1].from = Vec3d(0, 2, 0);  // along up
+    bad[1].up = Vec3d(0, 1, 0);
     bad[2].up = Vec3d(0, 0, 0);
     bad[3].from = Vec3d(0, 0, 0);
     bad[4].focal = 0;

@@ -6,11 +6,14 @@
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/ChangeBackground.h>
 
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -380,6 +383,44 @@ TEST(DensityToImage, SaysWhenNothingIsSeen) {
     EXPECT_EQ(kindOfFailure(ballGrid(), away), ErrorKind::Result);
 }
 
+TEST(DensityToImage, SaysHowFarADensityReaches) {
+    // High enough for the surface to lie between the nodes, but it does not.
+    const auto small = makeGrid(openvdb::CoordBBox(Coord(-8), Coord(8)), {},
+                                [](const Vec3d& x) { return 0.45 * std::exp(-x.lengthSqr() / 8); });
+    std::string message;
+    EXPECT_EQ(kindOfFailure(small, smallPicture(8, 8), &message), ErrorKind::Result);
+    EXPECT_NE(message.find("0.45 only"), std::string::npos) << message;
+}
+
+TEST(DensityToImage, TellsBadGridsFromBadOptions) {
+    const auto kindWithIso = [](std::optional<double> given, double stored, float background) {
+        auto grid = ballGrid();
+        openvdb::tools::changeBackground(grid->tree(), background);
+        bandvox::DensityMetadata metadata = *bandvox::densityMetadata(*grid);
+        metadata.iso = stored;
+        bandvox::setDensityMetadata(*grid, metadata);
+        RenderOptions options = smallPicture(8, 8);
+        options.iso = given;
+        return kindOfFailure(grid, options);
+    };
+    EXPECT_EQ(kindWithIso({}, std::nan(""), 0), ErrorKind::Input);
+    EXPECT_EQ(kindWithIso({}, 0.5, 0.7F), ErrorKind::Input);
+    EXPECT_EQ(kindWithIso(0.5, 0.9, 0.7F), ErrorKind::Usage);
+
+    for (const float value : {std::nanf(""), HUGE_VALF}) {
+        auto one = ballGrid();
+        one->tree().setValue(Coord::round(kCenter), value);
+        auto all = openvdb::FloatGrid::create(0);
+        all->fill(openvdb::CoordBBox(Coord(0), Coord(20)), value);
+        for (const auto& grid : {one, all, openvdb::FloatGrid::create(value)}) {
+            grid->tree().setValueOn(Coord(0));
+            std::string message;
+            EXPECT_EQ(kindOfFailure(grid, smallPicture(8, 8), &message), ErrorKind::Input);
+            EXPECT_NE(message.find("not finite"), std::string::npos) << message;
+        }
+    }
+}
+
 TEST(DensityToImage, RefusesOptionsOutOfRange) {
     const auto grid = ballGrid();
     std::vector<RenderOptions> bad(12, smallPicture(8, 8));
@@ -397,6 +438,10 @@ TEST(DensityToImage, RefusesOptionsOutOfRange) {
     bad[11].samples = 1 << 20;
     for (std::size_t i = 0; i < bad.size(); ++i) {
         EXPECT_EQ(kindOfFailure(grid, bad[i]), ErrorKind::Usage) << i;
+        // All but iso can be judged before there is a grid.
+        if (!bad[i].iso) {
+            EXPECT_THROW(requireValid(bad[i]), Error) << i;
+        }
     }
 }
 
@@ -404,6 +449,22 @@ class Interrupting final : public bandvox::Progress {
   public:
     bool interrupted() const override { return true; }
 };
+
+// Counts how often the work asks whether to stop.
+class Asked final : public bandvox::Progress {
+  public:
+    bool interrupted() const override {
+        ++times;
+        return false;
+    }
+    mutable std::atomic<int> times{0};
+};
+
+TEST(DensityToImage, AsksInEveryRowWhetherToStop) {
+    Asked progress;
+    densityToImage(ballGrid(), smallPicture(16, 90), progress);
+    EXPECT_GE(progress.times, 90);
+}
 
 TEST(DensityToImage, CanBeInterrupted) {
     Interrupting progress;

@@ -1,9 +1,11 @@
 #include <bandvox/core/error.h>
+#include <bandvox/core/memory.h>
 #include <bandvox/render/image.h>
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,9 +13,12 @@
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -163,6 +168,59 @@ TEST_F(ImageFile, RefusesOtherExtensionsAndIncompleteImages) {
     EXPECT_EQ(kind(mFolder / "a.png", Image()), ErrorKind::Usage);
     EXPECT_EQ(kind(mFolder / "none" / "a.png", sampleImage(3, 3)), ErrorKind::Runtime);
     EXPECT_EQ(filesInFolder(), 0u);
+}
+
+TEST_F(ImageFile, WritesLongPicturesStripByStrip) {
+    const Image image = sampleImage(3, 200);
+    for (const char* name : {"tall.exr", "tall.png"}) {
+        writeImage(mFolder / name, image);
+        const auto input = OIIO::ImageInput::open((mFolder / name).string());
+        ASSERT_TRUE(input) << OIIO::geterror();
+        const int channels = input->spec().nchannels;
+        std::vector<float> data(std::size_t(600) * channels);
+        ASSERT_TRUE(input->read_image(0, 0, 0, -1, OIIO::TypeDesc::FLOAT, data.data()));
+        const auto& names = input->spec().channelnames;
+        const auto blue = std::find(names.begin(), names.end(), "B") - names.begin();
+        const auto red = std::find(names.begin(), names.end(), "R") - names.begin();
+        for (std::size_t p = 2; p < 600; ++p) {
+            const float last = p == 2 ? -1.0F : data[(p - 1) * channels + red];
+            EXPECT_GE(data[p * channels + red], last) << name << p;
+            EXPECT_EQ(data[p * channels + blue], data[2 * channels + blue]) << name << p;
+        }
+    }
+}
+
+// The memory that a picture takes while it is written is hardly more than the picture's own.
+TEST_F(ImageFile, TakesLittleMemory) {
+    Image image;
+    image.width = 2000;
+    image.height = 1000;
+    image.color.assign(8'000'000, 0.5F);
+    image.depth.assign(2'000'000, 1.0F);
+    image.normal.assign(6'000'000, 1.0F);
+    image.position.assign(6'000'000, 1.0F);
+    for (const char* name : {"large.png", "large.exr"}) {
+        writeImage(mFolder / "warm.png", sampleImage(2, 2));
+        writeImage(mFolder / "warm.exr", sampleImage(2, 2));
+        const std::int64_t before = bandvox::peakMemory();
+        writeImage(mFolder / name, image);
+        EXPECT_LT(bandvox::peakMemory() - before, 40'000'000) << name;
+    }
+}
+
+TEST_F(ImageFile, WritesAPipeFromStartToEnd) {
+    ASSERT_EQ(mkfifo((mFolder / "pipe.exr").c_str(), 0600), 0);
+    std::string received;
+    std::thread reader([&] {
+        std::ifstream pipe(mFolder / "pipe.exr", std::ios::binary);
+        received.assign(std::istreambuf_iterator<char>(pipe), {});
+    });
+    writeImage(mFolder / "pipe.exr", sampleImage(7, 5));
+    reader.join();
+    writeImage(mFolder / "file.exr", sampleImage(7, 5));
+    std::ifstream file(mFolder / "file.exr", std::ios::binary);
+    EXPECT_EQ(received, std::string(std::istreambuf_iterator<char>(file), {}));
+    EXPECT_FALSE(received.empty());
 }
 
 TEST_F(ImageFile, LeavesTheOldFileWhenTheDiskIsFull) {

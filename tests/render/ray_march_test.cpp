@@ -120,6 +120,38 @@ TEST(RayMarch, HitsAtItsOriginInside) {
     EXPECT_EQ(hit->t, 0);
 }
 
+TEST(RayMarch, SeesFromFarAway) {
+    const SurfaceBlocks blocks = everywhere();
+    const RayMarch march(blocks, 0.5, ClearDistance::ofGaussian(0.5, kCutoff));
+    for (const double distance : {1e6, 1e9, 1e11, 1e15, 1e30}) {
+        Vec3d nearest(0.0);
+        FunctionProbe probe([&](const Vec3d& x) {
+            nearest = x;
+            return face(61.234 - x[0]);
+        });
+        const auto hit = march.firstHit({Vec3d(-distance, 40, 40), Vec3d(1, 0, 0)}, probe);
+        ASSERT_TRUE(hit || distance > 1e15) << distance;
+        EXPECT_LT(probe.asked, 100) << distance;
+        // What is rounded is how far it is, not where.
+        if (hit) {
+            EXPECT_NEAR(nearest[0], 61.234, 1e-5) << distance;
+        }
+        if (hit) {
+            EXPECT_NEAR(hit->t, distance + 61.234, 1e-15 * distance + 1e-5);
+        }
+    }
+}
+
+TEST(RayMarch, EndsWhateverTheDensity) {
+    const SurfaceBlocks blocks = everywhere();
+    const RayMarch march(blocks, 0.5, ClearDistance::ofSlope(0.5, 0, 1));
+    FunctionProbe jump([](const Vec3d& x) { return x[0] < 61.234 ? -1e300 : 1e300; });
+    const auto hit = march.firstHit({Vec3d(-30, 40, 40), Vec3d(1, 0, 0)}, jump);
+    ASSERT_TRUE(hit);
+    EXPECT_NEAR(hit->t, 91.234, 1e-4);
+    EXPECT_LT(jump.asked, 1000);
+}
+
 TEST(RayMarch, MissesWhatStaysBelow) {
     const SurfaceBlocks blocks = everywhere();
     const RayMarch march(blocks, 0.5, ClearDistance::ofGaussian(0.5, kCutoff));

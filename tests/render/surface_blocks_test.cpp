@@ -91,6 +91,19 @@ TEST(SurfaceBlocks, IsEmptyWithoutHighValues) {
     EXPECT_TRUE(spans(blocks, {Vec3d(0, 0, 0), Vec3d(1, 2, 3)}).empty());
 }
 
+TEST(SurfaceBlocks, NoticesValuesThatAreNotFinite) {
+    for (const float value : {std::nanf(""), HUGE_VALF, -HUGE_VALF}) {
+        auto grid = openvdb::FloatGrid::create(0);
+        grid->tree().setValue(Coord(1, 2, 3), 1.0F);
+        EXPECT_TRUE(SurfaceBlocks(*grid, 0.5).finite());
+        grid->tree().addTile(1, Coord(64), value, true);
+        EXPECT_FALSE(SurfaceBlocks(*grid, 0.5).finite()) << value;
+        grid->tree().addTile(1, Coord(64), 1.0F, true);
+        grid->tree().setValue(Coord(0, 0, 0), value);
+        EXPECT_FALSE(SurfaceBlocks(*grid, 0.5).finite()) << value;
+    }
+}
+
 TEST(SurfaceBlocks, StopsWhenToldTo) {
     auto grid = openvdb::FloatGrid::create(0);
     grid->tree().addTile(2, Coord(0), 1.0F, true);

@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <string>
 
 namespace bandvox {
@@ -17,9 +16,7 @@ namespace {
 using openvdb::Vec3d;
 
 MeshFile readCubeAt(double offset, const test::TemporaryFolder& folder) {
-    const auto path = folder.path() / "a.obj";
-    std::ofstream(path) << test::objText(test::cube(Vec3d(offset, 0, 0), 2.0));
-    return readMesh(path);
+    return readMesh(folder.write("a.obj", test::objText(test::cube(Vec3d(offset, 0, 0), 2.0))));
 }
 
 TEST(MeshPrecision, CoordinatesFarFromTheOriginAreSaidOrRefused) {
@@ -39,13 +36,14 @@ TEST(MeshPrecision, CoordinatesFarFromTheOriginAreSaidOrRefused) {
 
 TEST(MeshPrecision, NumbersTooSmallForADoubleAreZero) {
     const test::TemporaryFolder folder;
-    const auto path = folder.path() / "a.obj";
+    const auto read = [&](const std::string& number) {
+        return readMesh(
+            folder.write("a.obj", "v " + number + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+    };
     for (const char* small : {"1e-400", "1E-400"}) {
-        std::ofstream(path) << "v " << small << " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-        EXPECT_EQ(readMesh(path).mesh.points.size(), 3U) << small;
+        EXPECT_EQ(read(small).mesh.points.size(), 3U) << small;
     }
-    std::ofstream(path) << "v 1E400 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-    EXPECT_THROW(readMesh(path), Error);
+    EXPECT_THROW(read("1E400"), Error);
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
+#include "core/temporary_table.h"
+
 #include <bandvox/core/atomic_file.h>
 #include <bandvox/core/error.h>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -15,46 +18,134 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr int kMostLinks = 40;  // as Linux follows
+
+// Longer extensions are none that a format has.
+constexpr std::size_t kLongestExtension = 16;
+
 [[noreturn]] void fail(const fs::path& target, const std::string& why) {
     throw Error(ErrorKind::Runtime, "cannot write " + target.string() + ": " + why);
+}
+
+fs::path folderOf(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+// True for /proc/self/fd/1 and the like, which look like links to the file that is open.
+bool isDescriptor(const fs::path& path) {
+    std::error_code ignored;
+    return fs::canonical(folderOf(path), ignored).string().starts_with("/proc/");
 }
 
 // A name that no other process, and no other file of this one, uses.
 fs::path temporaryFor(const fs::path& target) {
     static std::atomic<unsigned> counter{0};
     const std::string unique = std::to_string(getpid()) + "-" + std::to_string(counter++);
+    const std::string extension = target.extension().string();
     return target.parent_path() /
-           ("." + target.stem().string() + ".tmp-" + unique + target.extension().string());
+           (".bandvox-" + unique + (extension.size() <= kLongestExtension ? extension : ""));
+}
+
+// Throws unless a file can be made in the target's folder, as far as that can be told.
+void requireFolder(const fs::path& target, const fs::path& replaced) {
+    std::error_code ignored;
+    const fs::path folder = folderOf(replaced);
+    if (fs::is_symlink(fs::symlink_status(replaced, ignored))) fail(target, "too many links");
+    if (!fs::exists(folder, ignored)) fail(target, "there is no folder " + folder.string());
+    if (!fs::is_directory(folder, ignored)) fail(target, folder.string() + " is not a folder");
 }
 
 }  // namespace
 
-AtomicFile::AtomicFile(fs::path target) : mTarget(std::move(target)) {
-    std::error_code ignored;
-    const fs::path folder = mTarget.has_parent_path() ? mTarget.parent_path() : fs::path(".");
-    if (mTarget.filename().empty()) fail(mTarget, "the name is that of a folder");
-    if (fs::is_directory(mTarget, ignored)) fail(mTarget, "it is a folder");
-    if (!fs::exists(folder, ignored)) fail(mTarget, "there is no folder " + folder.string());
-    if (!fs::is_directory(folder, ignored)) fail(mTarget, folder.string() + " is not a folder");
+fs::path followLinks(fs::path path) {
+    std::error_code error;
+    for (int i = 0; i < kMostLinks; ++i) {
+        if (!fs::is_symlink(fs::symlink_status(path, error)) || isDescriptor(path)) break;
+        const fs::path next = fs::read_symlink(path, error);
+        if (error) break;
+        path = path.parent_path() / next;
+    }
+    return path;
+}
 
-    // Create the file now, so that a folder that cannot be written to is known before the work.
-    mTemporary = temporaryFor(mTarget);
-    const int descriptor =
-        ::open(mTemporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor < 0) fail(mTarget, std::strerror(errno));
-    ::close(descriptor);
+AtomicFile::AtomicFile(fs::path target)
+    : mTarget(std::move(target)), mReplaced(followLinks(mTarget)) {
+    if (mTarget.filename().empty()) fail(mTarget, "the name is that of a folder");
+    struct stat status = {};
+    const bool exists = ::stat(mReplaced.c_str(), &status) == 0;
+    if (exists && S_ISDIR(status.st_mode)) fail(mTarget, "it is a folder");
+    if (exists && S_ISBLK(status.st_mode)) fail(mTarget, "it is a block device");
+    if (exists && S_ISSOCK(status.st_mode) && !isDescriptor(mReplaced)) {
+        fail(mTarget, "it is a socket");
+    }
+    mInPlace = exists && (!S_ISREG(status.st_mode) || isDescriptor(mReplaced));
+    if (mInPlace) {
+        if (::faccessat(AT_FDCWD, mReplaced.c_str(), W_OK, AT_EACCESS) != 0) {
+            fail(mTarget, std::strerror(errno));
+        }
+        return;
+    }
+    if (exists) mMode = status.st_mode & 07777;
+    requireFolder(mTarget, mReplaced);
+
+    // Only making a file tells whether one can be made. Do it now, before the work.
+    create();
+    forget();
 }
 
 AtomicFile::~AtomicFile() {
-    std::error_code ignored;
-    if (!mCommitted) fs::remove(mTemporary, ignored);
+    if (!mCommitted) forget();
+}
+
+void AtomicFile::create() {
+    for (;;) {
+        mTemporary = temporaryFor(mReplaced);
+        mSlot = noteTemporary(mTemporary.string());
+        const mode_t mode = mMode ? (*mMode & 0777) | S_IWUSR : 0666;
+        const int descriptor =
+            ::open(mTemporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+        if (descriptor >= 0) {
+            ::close(descriptor);
+            return;
+        }
+        const int error = errno;
+        dropTemporary(mSlot);
+        mTemporary.clear();
+        // A process of the same number may have died and left such a name.
+        if (error != EEXIST) fail(mTarget, std::strerror(error));
+    }
+}
+
+void AtomicFile::forget() {
+    if (mTemporary.empty()) return;
+    ::unlink(mTemporary.c_str());
+    dropTemporary(mSlot);
+    mTemporary.clear();
+}
+
+std::ofstream AtomicFile::open() {
+    if (!mInPlace) create();
+    // What is in place already, in the file that is the standard output, is not written over.
+    std::ofstream stream(mInPlace ? mReplaced : mTemporary,
+                         std::ios::binary | (mInPlace ? std::ios::app : std::ios::trunc));
+    if (!stream) fail(mTarget, std::strerror(errno));
+    return stream;
 }
 
 void AtomicFile::commit() {
-    std::error_code error;
-    fs::rename(mTemporary, mTarget, error);
-    if (error) fail(mTarget, error.message());
+    if (!mInPlace) {
+        std::error_code error;
+        // Where permissions cannot be passed on, the file keeps those that it was made with.
+        if (mMode) ::chmod(mTemporary.c_str(), *mMode);
+        fs::rename(mTemporary, mReplaced, error);
+        if (error) fail(mTarget, error.message());
+        dropTemporary(mSlot);
+    }
     mCommitted = true;
+}
+
+void AtomicFile::removeTemporaries() noexcept {
+    removeNotedTemporaries();
 }
 
 }  // namespace bandvox

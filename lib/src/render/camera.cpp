@@ -29,12 +29,42 @@ bool isFinite(const openvdb::Vec3d& v) {
 
 openvdb::Vec3d requireDirection(const openvdb::Vec3d& v, const char* what) {
     const double length = v.length();
-    if (!isFinite(v) || !(length > 0)) {
+    if (!std::isfinite(length) || !(length > 0)) {
         std::ostringstream message;
         message << "the camera's " << what << " is " << v << "; it must not be zero, nor infinite";
         throw Error(ErrorKind::Usage, message.str());
     }
     return v / length;
+}
+
+// From what is looked at to the eye.
+openvdb::Vec3d directionBack(const CameraOptions& options, const openvdb::Vec3d& lookat) {
+    if (!options.eye) return requireDirection(options.from, "from");
+    if (*options.eye == lookat) {
+        std::ostringstream message;
+        message << "the camera's eye is " << *options.eye << ", and that is "
+                << (options.lookat ? "its lookat" : "the middle of the object, which it looks at")
+                << "; expected two places";
+        throw Error(ErrorKind::Usage, message.str());
+    }
+    return requireDirection(*options.eye - lookat, "eye minus its lookat");
+}
+
+// The direction to the right in the picture, of length 1.
+openvdb::Vec3d directionRight(const CameraOptions& options, const openvdb::Vec3d& back) {
+    openvdb::Vec3d right =
+        requireDirection(options.up.value_or(openvdb::Vec3d(0, 1, 0)), "up").cross(back);
+    // From straight above the far side, -z, is up, as on a map; from straight below z is.
+    if (!options.up && !(right.length() > kSmallestSine)) {
+        right = openvdb::Vec3d(0, 0, back[1] > 0 ? -1 : 1).cross(back);
+    }
+    if (!(right.length() > kSmallestSine)) {
+        std::ostringstream message;
+        message << "the camera's up is " << *options.up
+                << ", along the view; expected another direction";
+        throw Error(ErrorKind::Usage, message.str());
+    }
+    return right.unit();
 }
 
 // The corners of a box relative to `center`, along the camera's axes: right, up, forward.
@@ -71,13 +101,7 @@ Fit fit(const std::array<openvdb::Vec3d, 8>& corners, int axis, double tangent, 
 
 }  // namespace
 
-Camera::Camera(const CameraOptions& options, int width, int height, const openvdb::BBoxd& object)
-    : mProjection(options.projection), mPixelsWide(width), mPixelsHigh(height) {
-    // Refuse what defines no view.
-    const bool perspective = mProjection == CameraOptions::Projection::Perspective;
-    if (!(width > 0 && height > 0)) {
-        refuse("picture's smaller side, in pixels,", std::min(width, height), "at least 1");
-    }
+void requireValid(const CameraOptions& options) {
     if (!(options.focal > 0) || !std::isfinite(options.focal)) {
         refuse("focal length, mm,", options.focal, "above 0");
     }
@@ -87,20 +111,28 @@ Camera::Camera(const CameraOptions& options, int width, int height, const openvd
     if (!(options.frame >= 0) || !std::isfinite(options.frame)) {
         refuse("frame, world units,", options.frame, "above 0, or 0 to fit");
     }
+    if (options.up) requireDirection(*options.up, "up");
+    if (options.lookat && !isFinite(*options.lookat)) requireDirection(*options.lookat, "lookat");
+    if (options.eye && !isFinite(*options.eye)) requireDirection(*options.eye, "eye");
+    // Without a lookat the object says where an eye looks to.
+    if (options.eye && !options.lookat) return;
+    directionRight(options, directionBack(options, options.lookat.value_or(openvdb::Vec3d(0.0))));
+}
+
+Camera::Camera(const CameraOptions& options, int width, int height, const openvdb::BBoxd& object)
+    : mProjection(options.projection), mPixelsWide(width), mPixelsHigh(height) {
+    // Refuse what defines no view.
+    const bool perspective = mProjection == CameraOptions::Projection::Perspective;
+    if (!(width > 0 && height > 0)) {
+        refuse("picture's smaller side, in pixels,", std::min(width, height), "at least 1");
+    }
+    requireValid(options);
 
     // Turn the axes.
     const openvdb::Vec3d lookat = options.lookat.value_or(object.getCenter());
-    if (!isFinite(lookat)) requireDirection(lookat, "lookat");
-    const openvdb::Vec3d back =
-        options.eye ? requireDirection(*options.eye - lookat, "eye minus its lookat")
-                    : requireDirection(options.from, "from");
+    const openvdb::Vec3d back = directionBack(options, lookat);
     mForward = -back;
-    mRight = mForward.cross(requireDirection(options.up, "up"));
-    if (!(mRight.length() > kSmallestSine)) {
-        refuse("angle between up and the view, as a sine,", mRight.length(),
-               "above 0: choose another up");
-    }
-    mRight.normalize();
+    mRight = directionRight(options, back);
     mUpward = mRight.cross(mForward);
 
     // Frame the object, around the lookat if that was given, else in the middle of the picture.

@@ -135,8 +135,9 @@ std::int64_t drawTiles(const Scene& scene, const Reconstruction& reconstruction,
     forEachTile(image.width, image.height, progress, [&](const PixelBox& tile) {
         const auto density = reconstruction.probe();
         std::int64_t tileHits = 0;
-        tile.forEach(
-            [&](int column, int row) { tileHits += scene.draw(column, row, *density, image); });
+        tile.forEach(progress, [&](int column, int row) {
+            tileHits += scene.draw(column, row, *density, image);
+        });
         hits += tileHits;
     });
     return hits;
@@ -168,6 +169,7 @@ RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptio
     // not much further; half the height is on the safe side.
     const double slope = faceGradient(filter);
     const SurfaceBlocks blocks(*grid, 0.5 * (iso + grid->background()));
+    if (!blocks.finite()) failNotFinite(*grid);
     if (blocks.empty()) failEmpty(blocks.maximum(), iso);
     const RayMarch march(blocks, iso, clearDistance(*grid, metadata, blocks.maximum(), iso, slope));
 
@@ -177,7 +179,7 @@ RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptio
     const Scene scene(*grid, options, camera, march, slope);
     result.hits = drawTiles(scene, *reconstruction, result.image, progress);
     result.rays = std::int64_t(options.width) * options.height * options.samples;
-    requireHits(result);
+    requireHits(result, blocks.maximum(), iso);
     return result;
 }
 

@@ -13,7 +13,9 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <ostream>
 #include <string>
+#include <vector>
 
 namespace bandvox {
 
@@ -29,6 +31,11 @@ std::string extensionOf(const std::filesystem::path& path) {
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& why) {
     throw Error(ErrorKind::Runtime, "cannot write " + path.string() + ": " + why);
+}
+
+[[noreturn]] void failExtension(const std::filesystem::path& path) {
+    throw Error(ErrorKind::Usage, "cannot write " + path.string() + ": the extension is \"" +
+                                      path.extension().string() + "\"; expected .png or .exr");
 }
 
 std::size_t pixelCount(const Image& image) {
@@ -64,26 +71,30 @@ std::uint8_t eightBits(double value) {
     return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0, 1.0)));
 }
 
-// sRGB with alpha beside it, four bytes a pixel.
-std::vector<std::uint8_t> srgbPixels(const Image& image) {
-    std::vector<std::uint8_t> pixels(image.color.size());
-    for (std::size_t p = 0; p < pixels.size(); p += 4) {
+// Rows that are encoded at a time, whole blocks of every encoder. The picture is there once
+// already, and another copy of it could be more than the memory holds.
+constexpr int kStripRows = 64;
+
+// The pixels [begin, end) in sRGB with alpha beside it, four bytes a pixel.
+std::vector<std::uint8_t> srgbPixels(const Image& image, std::size_t begin, std::size_t end) {
+    std::vector<std::uint8_t> pixels;
+    pixels.reserve(4 * (end - begin));
+    for (std::size_t p = 4 * begin; p < 4 * end; p += 4) {
         const double alpha = image.color[p + 3];
         for (int c = 0; c < 3; ++c) {
             const double linear = alpha > 0 ? image.color[p + c] / alpha : 0;
-            pixels[p + c] = eightBits(srgbOfLinear(std::max(linear, 0.0)));
+            pixels.push_back(eightBits(srgbOfLinear(std::max(linear, 0.0))));
         }
-        pixels[p + 3] = eightBits(alpha);
+        pixels.push_back(eightBits(alpha));
     }
     return pixels;
 }
 
-// All channels of all pixels side by side, in the order of exrSpec.
-std::vector<float> dataPixels(const Image& image) {
-    const std::size_t pixels = pixelCount(image);
+// All channels of the pixels [begin, end) side by side, in the order of exrSpec.
+std::vector<float> dataPixels(const Image& image, std::size_t begin, std::size_t end) {
     std::vector<float> data;
-    data.reserve(pixels * 11);
-    for (std::size_t p = 0; p < pixels; ++p) {
+    data.reserve(11 * (end - begin));
+    for (std::size_t p = begin; p < end; ++p) {
         data.insert(data.end(), &image.color[4 * p], &image.color[4 * p] + 4);
         data.push_back(image.depth[p]);
         data.insert(data.end(), &image.normal[3 * p], &image.normal[3 * p] + 3);
@@ -111,31 +122,71 @@ OIIO::ImageSpec exrSpec(const Image& image) {
     return spec;
 }
 
-// Encodes into memory, so that what the disk says is heard by this file and not by an encoder.
-std::vector<unsigned char> encode(const std::filesystem::path& path, OIIO::ImageSpec spec,
-                                  OIIO::TypeDesc format, const void* pixels) {
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    const auto output = OIIO::ImageOutput::create(path.string(), &memory);
-    if (!output) fail(path, OIIO::geterror());
-    if (!output->supports("ioproxy")) fail(path, "OpenImageIO cannot encode it in memory");
-    OIIO::Filesystem::IOProxy* proxy = &memory;
-    spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    if (!output->open(path.string(), spec) || !output->write_image(format, pixels) ||
-        !output->close()) {
-        fail(path, output->geterror());
+// Takes what an encoder writes to a stream, and keeps what the disk has said about it.
+class StreamProxy final : public OIIO::Filesystem::IOProxy {
+  public:
+    explicit StreamProxy(std::ostream& stream) : IOProxy("", Write), mStream(stream) {}
+
+    const char* proxytype() const override { return "stream"; }
+    bool seek(std::int64_t offset) override {
+        m_pos = offset;
+        return noted(static_cast<bool>(mStream.seekp(offset)));
     }
-    return bytes;
+    std::size_t write(const void* bytes, std::size_t size) override {
+        m_pos += static_cast<std::int64_t>(size);
+        return noted(static_cast<bool>(mStream.write(static_cast<const char*>(bytes),
+                                                     static_cast<std::streamsize>(size))))
+                   ? size
+                   : 0;
+    }
+    void flush() const override { mStream.flush(); }
+
+    // What went wrong first; 0 if nothing did.
+    int failure() const { return mFailure; }
+
+  private:
+    bool noted(bool good) {
+        if (!good && mFailure == 0) mFailure = errno;
+        return good;
+    }
+
+    std::ostream& mStream;
+    int mFailure = 0;
+};
+
+OIIO::ImageSpec specOf(const Image& image, bool png) {
+    OIIO::ImageSpec spec = png ? pngSpec(image) : exrSpec(image);
+    for (const auto& [name, value] : image.metadata) spec.attribute(name, value);
+    return spec;
 }
 
-void writeBytes(const std::filesystem::path& path, const std::vector<unsigned char>& bytes) {
-    AtomicFile file(path);
-    std::ofstream stream(file.temporary(), std::ios::binary);
-    stream.write(reinterpret_cast<const char*>(bytes.data()),
-                 static_cast<std::streamsize>(bytes.size()));
-    stream.close();
-    if (!stream) fail(path, std::strerror(errno));
-    file.commit();
+bool writeStrips(OIIO::ImageOutput& output, const Image& image, bool png) {
+    for (int top = 0; top < image.height; top += kStripRows) {
+        const int bottom = std::min(top + kStripRows, image.height);
+        const std::size_t begin = static_cast<std::size_t>(top) * image.width;
+        const std::size_t end = static_cast<std::size_t>(bottom) * image.width;
+        const bool good = png ? output.write_scanlines(top, bottom, 0, OIIO::TypeDesc::UINT8,
+                                                       srgbPixels(image, begin, end).data())
+                              : output.write_scanlines(top, bottom, 0, OIIO::TypeDesc::FLOAT,
+                                                       dataPixels(image, begin, end).data());
+        if (!good) return false;
+    }
+    return true;
+}
+
+// Returns what went wrong, or nothing.
+std::string encode(const std::string& name, const Image& image, OIIO::Filesystem::IOProxy& proxy) {
+    const bool png = extensionOf(name) == ".png";
+    OIIO::ImageSpec spec = specOf(image, png);
+    OIIO::Filesystem::IOProxy* pointer = &proxy;
+    spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &pointer);
+    const auto output = OIIO::ImageOutput::create(name, &proxy);
+    if (!output) return OIIO::geterror();
+    if (!output->supports("ioproxy")) return "OpenImageIO cannot write it through this library";
+    if (!output->open(name, spec) || !writeStrips(*output, image, png) || !output->close()) {
+        return output->geterror();
+    }
+    return {};
 }
 
 }  // namespace
@@ -145,19 +196,41 @@ bool isImageFile(const std::filesystem::path& path) {
     return extension == ".png" || extension == ".exr";
 }
 
-void writeImage(const std::filesystem::path& path, const Image& image) {
-    if (!isImageFile(path)) {
-        throw Error(ErrorKind::Usage, "cannot write " + path.string() + ": the extension is \"" +
-                                          path.extension().string() + "\"; expected .png or .exr");
-    }
+void writeImage(AtomicFile& file, const Image& image) {
+    const std::filesystem::path& path = file.target();
+    if (!isImageFile(path)) failExtension(path);
     requireComplete(image);
-    const bool png = extensionOf(path) == ".png";
-    OIIO::ImageSpec spec = png ? pngSpec(image) : exrSpec(image);
-    for (const auto& [name, value] : image.metadata) spec.attribute(name, value);
-    const std::vector<unsigned char> bytes =
-        png ? encode(path, spec, OIIO::TypeDesc::UINT8, srgbPixels(image).data())
-            : encode(path, spec, OIIO::TypeDesc::FLOAT, dataPixels(image).data());
-    writeBytes(path, bytes);
+    std::ofstream stream = file.open();
+    std::string failure;
+    int diskFailure = 0;
+    if (file.inPlace()) {
+        // An encoder goes back to fill in what it knows at the end.
+        std::vector<unsigned char> bytes;
+        OIIO::Filesystem::IOVecOutput memory(bytes);
+        failure = encode(path.string(), image, memory);
+        stream.write(reinterpret_cast<const char*>(bytes.data()),
+                     static_cast<std::streamsize>(bytes.size()));
+    } else {
+        StreamProxy proxy(stream);
+        failure = encode(path.string(), image, proxy);
+        diskFailure = proxy.failure();
+    }
+    if (diskFailure == 0) {
+        errno = 0;
+        stream.close();
+        if (!stream) diskFailure = errno;
+    }
+    // What the disk says comes before what an encoder makes of it.
+    if (diskFailure != 0) fail(path, std::strerror(diskFailure));
+    if (!failure.empty() || !stream) fail(path, failure.empty() ? "unknown failure" : failure);
+}
+
+void writeImage(const std::filesystem::path& path, const Image& image) {
+    if (!isImageFile(path)) failExtension(path);
+    requireComplete(image);
+    AtomicFile file(path);
+    writeImage(file, image);
+    file.commit();
 }
 
 }  // namespace bandvox

@@ -56,10 +56,12 @@ class Lighting {
 struct PixelBox {
     int left, top, right, bottom;
 
-    /// Calls `visit(column, row)` for each pixel.
+    /// Calls `visit(column, row)` for each pixel. Stops between rows if the caller wants to:
+    /// throws Error(ErrorKind::Interrupted).
     template <typename Visitor>
-    void forEach(const Visitor& visit) const {
+    void forEach(const Progress& progress, const Visitor& visit) const {
         for (int row = top; row < bottom; ++row) {
+            progress.throwIfInterrupted();
             for (int column = left; column < right; ++column) visit(column, row);
         }
     }

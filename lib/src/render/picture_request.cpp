@@ -28,6 +28,11 @@ void requireColor(const char* what, const openvdb::Vec3d& color) {
 
 }  // namespace
 
+void failNotFinite(const openvdb::FloatGrid& grid) {
+    throw Error(ErrorKind::Input, "the grid \"" + grid.getName() +
+                                      "\" has values that are not finite; expected a density");
+}
+
 void requireValid(const RenderOptions& options) {
     requireInRange("width, pixels,", options.width, 1, kLargestSide);
     requireInRange("height, pixels,", options.height, 1, kLargestSide);
@@ -35,6 +40,7 @@ void requireValid(const RenderOptions& options) {
     requireInRange("ambient light", options.ambient, 0.0, 1.0);
     requireColor("color", options.color);
     if (options.background) requireColor("background", *options.background);
+    requireValid(options.camera);
     const double light = options.light.length();
     if (!(light > 0) || !std::isfinite(light)) {
         std::ostringstream message;
@@ -59,6 +65,7 @@ void requireDensity(const openvdb::FloatGrid& grid) {
     if (grid.evalActiveVoxelBoundingBox().empty()) {
         throw Error(ErrorKind::Input, name + "has no active voxel; expected a density");
     }
+    if (!std::isfinite(grid.background())) failNotFinite(grid);
 }
 
 double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata>& metadata,
@@ -66,9 +73,10 @@ double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata
     const double iso = options.iso.value_or(metadata ? metadata->iso : 0.5);
     if (!std::isfinite(iso) || !(iso > grid.background())) {
         std::ostringstream message;
-        message << "the iso-value is " << iso << "; it must be above the grid's background, "
-                << grid.background();
-        throw Error(ErrorKind::Usage, message.str());
+        const bool isStored = !options.iso && metadata;
+        message << "the iso-value " << (isStored ? "stored in the grid " : "") << "is " << iso
+                << "; it must be above the grid's background, " << grid.background();
+        throw Error(options.iso ? ErrorKind::Usage : ErrorKind::Input, message.str());
     }
     return iso;
 }
@@ -83,6 +91,7 @@ openvdb::BBoxd worldBox(const openvdb::FloatGrid& grid) {
                                                       i & 2 ? index.max()[1] : index.min()[1],
                                                       i & 4 ? index.max()[2] : index.min()[2])));
     }
+    if (!std::isfinite(world.extents().length())) failNotFinite(grid);
     return world;
 }
 
@@ -93,11 +102,17 @@ void failEmpty(double maximum, double iso) {
     throw Error(ErrorKind::Result, message.str());
 }
 
-void requireHits(const RenderResult& result) {
+void requireHits(const RenderResult& result, double maximum, double iso) {
     if (result.hits > 0) return;
-    throw Error(ErrorKind::Result,
-                "nothing to see: none of " + std::to_string(result.rays) +
-                    " lines of sight meets the surface; expected the camera to face it");
+    std::ostringstream message;
+    message << "nothing to see: ";
+    if (maximum < iso) {
+        message << "the density reaches " << maximum << " only, below the iso-value " << iso;
+    } else {
+        message << "none of " << result.rays
+                << " lines of sight meets the surface; expected the camera to face it";
+    }
+    throw Error(ErrorKind::Result, message.str());
 }
 
 }  // namespace bandvox

@@ -9,24 +9,24 @@
 
 namespace bandvox {
 
-/// Throws Error(ErrorKind::Usage) for options out of range.
-void requireValid(const RenderOptions& options);
-
 /// Throws Error(ErrorKind::Input) unless `grid` is a density that can be drawn.
 void requireDensity(const openvdb::FloatGrid& grid);
 
-/// The density that is the surface. Throws Error(ErrorKind::Usage) unless it is above the
-/// background.
+/// Throws Error(ErrorKind::Input), for a grid that has values that are not finite.
+[[noreturn]] void failNotFinite(const openvdb::FloatGrid& grid);
+
+/// The density that is the surface. Throws unless it is above the background:
+/// Error(ErrorKind::Usage) if it comes from the options, Error(ErrorKind::Input) otherwise.
 double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata>& metadata,
              const RenderOptions& options);
 
-/// The box of the active voxels, world units.
+/// The box of the active voxels, world units. Throws Error(ErrorKind::Input) if it is not finite.
 openvdb::BBoxd worldBox(const openvdb::FloatGrid& grid);
 
 /// Throws Error(ErrorKind::Result), for a grid whose values reach no more than `maximum`.
 [[noreturn]] void failEmpty(double maximum, double iso);
 
-/// Throws Error(ErrorKind::Result) if nothing was hit.
-void requireHits(const RenderResult& result);
+/// Throws Error(ErrorKind::Result) if nothing was hit; `maximum` is the highest value of the grid.
+void requireHits(const RenderResult& result, double maximum, double iso);
 
 }  // namespace bandvox

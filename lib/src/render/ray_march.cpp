@@ -12,6 +12,9 @@ namespace {
 constexpr double kShortestStep = 0.25;
 constexpr double kRootError = 1e-5;
 
+// A root takes about ten; more than this only if the density is no smooth function.
+constexpr int kMostRootSteps = 200;
+
 // What a density may be off by: the tolerance of the lattice, cut off where it is not active, and
 // that of the reconstruction.
 constexpr double kDensityError = 1e-3;
@@ -32,8 +35,11 @@ double parabolaTop(const Sample& a, const Sample& b, const Sample& c) {
 // One line of sight on its way through the blocks.
 class March {
   public:
-    March(const Ray& ray, DensityProbe& density, double iso, const ClearDistance& clear)
+    // The line of sight begins at `earliest`, which is not positive.
+    March(const Ray& ray, double earliest, DensityProbe& density, double iso,
+          const ClearDistance& clear)
         : mRay(ray),
+          mEarliest(earliest),
           mDensity(density),
           mIso(iso),
           mClear(clear),
@@ -48,7 +54,9 @@ class March {
         }
         while (mLast.t < t1) {
             const double step = std::max(kShortestStep, mClear(mLast.above)) * mVoxel;
-            if (arrive(at(mLast.t + step))) return true;
+            const double next = mLast.t + step;
+            if (!(next > mLast.t)) return false;
+            if (arrive(at(next))) return true;
         }
         return false;
     }
@@ -84,7 +92,7 @@ class March {
     // The ray is inside where its first block starts. If it was outside a voxel before, then the
     // surface is between; else the ray starts inside.
     double entry(const Sample& inside) const {
-        const double before = std::max(inside.t - mVoxel, 0.0);
+        const double before = std::max(inside.t - mVoxel, mEarliest);
         if (before == inside.t) return inside.t;
         const Sample outside = at(before);
         return outside.above < 0 ? root(outside, inside) : before;
@@ -94,13 +102,15 @@ class March {
     double root(Sample outside, Sample inside) const {
         const double error = kRootError * mVoxel;
         int side = 0;
-        while (inside.t - outside.t > error) {
+        for (int i = 0; i < kMostRootSteps && inside.t - outside.t > error; ++i) {
             const double width = inside.t - outside.t;
             const double secant =
                 outside.t + width * outside.above / (outside.above - inside.above);
             // Step a little over the root, so that the other end follows.
             const double guard = std::min(0.5 * error, 0.25 * width);
-            const Sample next = at(std::clamp(secant, outside.t + guard, inside.t - guard));
+            const double place = std::clamp(secant, outside.t + guard, inside.t - guard);
+            if (!(place > outside.t && place < inside.t)) break;
+            const Sample next = at(place);
             if (next.above < 0) {
                 outside = next;
                 if (side < 0) inside.above *= 0.5;
@@ -115,6 +125,7 @@ class March {
     }
 
     const Ray& mRay;
+    double mEarliest;
     DensityProbe& mDensity;
     double mIso;
     const ClearDistance& mClear;
@@ -154,11 +165,17 @@ ClearDistance ClearDistance::ofGaussian(double iso, double cutoff) {
 }
 
 std::optional<RayHit> RayMarch::firstHit(const Ray& ray, DensityProbe& density) const {
-    March march(ray, density, mIso, mClear);
+    // Count t from where the blocks begin: seen from far away, steps would be lost in rounding.
+    const std::optional<double> start = mBlocks.entry(ray);
+    if (!start) return std::nullopt;
+    const Ray near{ray.origin + *start * ray.direction, ray.direction};
+    March march(near, -*start, density, mIso, mClear);
     bool found = false;
-    mBlocks.walk(ray, [&](double t0, double t1) { return found = march.through(t0, t1); });
+    mBlocks.walk(near, [&](double t0, double t1) { return found = march.through(t0, t1); });
     if (!found) return std::nullopt;
-    return march.hit();
+    RayHit hit = march.hit();
+    hit.t += *start;
+    return hit;
 }
 
 }  // namespace bandvox

@@ -6,6 +6,7 @@
 #include <openvdb/math/Ray.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -29,13 +30,27 @@ constexpr std::size_t kLeavesPerTask = 256;
 struct LeafFindings {
     openvdb::CoordBBox high;  // voxels at or above the threshold; empty if there are none
     float maximum;
+    bool finite = true;
 };
 
+using BlockRay = openvdb::math::Ray<double>;
+
+BlockRay inBlocks(const Ray& ray) {
+    return BlockRay(ray.origin / kBlockSide, ray.direction / kBlockSide, 0.0,
+                    std::numeric_limits<double>::max());
+}
+
+bool isFinite(float value) {
+    constexpr float kLargest = 1e30F;
+    return std::abs(value) <= kLargest;
+}
+
 LeafFindings examine(const Leaf& leaf, float threshold) {
-    LeafFindings found{openvdb::CoordBBox(), leaf.getValue(0)};
+    LeafFindings found{openvdb::CoordBBox(), std::numeric_limits<float>::lowest()};
     const float* values = leaf.buffer().data();
     for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
         found.maximum = std::max(found.maximum, values[i]);
+        found.finite = found.finite && isFinite(values[i]);
         if (values[i] >= threshold) found.high.expand(leaf.offsetToGlobalCoord(i));
     }
     return found;
@@ -58,6 +73,7 @@ SurfaceBlocks::SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold)
     });
     for (const LeafFindings& leaf : found) {
         mMaximum = std::max<double>(mMaximum, leaf.maximum);
+        mFinite = mFinite && leaf.finite;
         if (!leaf.high.empty()) mark(leaf.high);
     }
 
@@ -65,6 +81,7 @@ SurfaceBlocks::SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold)
     auto tile = grid.tree().cbeginValueAll();
     tile.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
+        mFinite = mFinite && isFinite(tile.getValue());
         if (!(tile.getValue() >= limit)) continue;
         mMaximum = std::max<double>(mMaximum, tile.getValue());
         mark(tile.getBoundingBox());
@@ -83,10 +100,14 @@ void SurfaceBlocks::mark(const openvdb::CoordBBox& voxels) {
     mBlocks.sparseFill(blocks, true, true);
 }
 
+std::optional<double> SurfaceBlocks::entry(const Ray& ray) const {
+    BlockRay blockRay = inBlocks(ray);
+    if (mBlocks.empty() || !blockRay.clip(mBox)) return std::nullopt;
+    return blockRay.t0();
+}
+
 void SurfaceBlocks::walk(const Ray& ray, const std::function<bool(double, double)>& visit) const {
-    using BlockRay = openvdb::math::Ray<double>;
-    BlockRay blockRay(ray.origin / kBlockSide, ray.direction / kBlockSide, 0.0,
-                      std::numeric_limits<double>::max());
+    BlockRay blockRay = inBlocks(ray);
     if (mBlocks.empty() || !blockRay.clip(mBox)) return;
 
     // Step over the mask's leaves, and inside each over its blocks.

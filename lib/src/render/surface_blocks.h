@@ -5,6 +5,7 @@
 #include <openvdb/openvdb.h>
 
 #include <functional>
+#include <optional>
 
 namespace bandvox {
 
@@ -21,6 +22,12 @@ class SurfaceBlocks {
     /// The largest value of the lattice.
     double maximum() const { return mMaximum; }
 
+    /// False if a value of the lattice is not finite, or so large that sums of them are not.
+    bool finite() const { return mFinite; }
+
+    /// The t ≥ 0 where a ray comes into the box of all blocks; nothing if it passes by.
+    std::optional<double> entry(const Ray& ray) const;
+
     /// Calls `visit(t0, t1)` for each block on the way of origin + t·direction, t ≥ 0, in order;
     /// stops when it returns true. `direction` may have any length but 0.
     void walk(const Ray& ray, const std::function<bool(double, double)>& visit) const;
@@ -31,6 +38,7 @@ class SurfaceBlocks {
     openvdb::MaskTree mBlocks;  // one voxel for each block
     openvdb::BBoxd mBox;        // of the blocks
     double mMaximum;
+    bool mFinite = true;
 };
 
 }  // namespace bandvox

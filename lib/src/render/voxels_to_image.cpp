@@ -72,14 +72,14 @@ class VoxelPicture {
     void addSamples(const openvdb::Vec2d& place, Progress& progress) {
         forEachTile(mImage.width, mImage.height, progress, [&](const PixelBox& tile) {
             const SolidVoxels::Probe probe = mSolid.probe();
-            tile.forEach([&](int column, int row) { look(column, row, place, probe); });
+            tile.forEach(progress, [&](int column, int row) { look(column, row, place, probe); });
         });
         const DistanceBuffer buffer{mImage.width, mImage.height, place, mDistance};
         const DepthNormals normals(
             mScene.camera, buffer,
             mShading == Shading::Cross ? DepthNormals::kCross : DepthNormals::kSobel);
         forEachTile(mImage.width, mImage.height, progress, [&](const PixelBox& tile) {
-            tile.forEach([&](int column, int row) { shade(column, row, place, normals); });
+            tile.forEach(progress, [&](int column, int row) { shade(column, row, place, normals); });
         });
     }
 
@@ -173,7 +173,7 @@ RenderResult voxelsToImage(const VoxelScene& scene, Progress& progress) {
     }
     result.hits = picture.finish();
     result.rays = std::int64_t(options.width) * options.height * options.samples;
-    requireHits(result);
+    requireHits(result, solid.maximum(), scene.iso);
     return result;
 }
 

@@ -5,10 +5,13 @@
 #include <openvdb/openvdb.h>
 
 #include <filesystem>
+#include <iosfwd>
 #include <optional>
 #include <string>
 
 namespace bandvox {
+
+class AtomicFile;
 
 /// What a density grid says of itself, stored as grid metadata named `bandvox_<member>` in
 /// snake_case (bandvox_version, bandvox_closure_error, ...).
@@ -54,8 +57,16 @@ struct VdbWriteOptions {
 void writeVdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
               const VdbWriteOptions& options = {});
 
+/// The same to a file that the caller commits.
+void writeVdb(AtomicFile& file, const openvdb::GridCPtrVec& grids,
+              const VdbWriteOptions& options = {});
+
 /// Reads all grids of a .vdb file. Throws Error(ErrorKind::Input) if it is missing, not a VDB,
 /// or damaged.
 openvdb::GridPtrVec readVdb(const std::filesystem::path& path);
+
+/// The same from a stream that need not be seekable, as the standard input: all that it holds is
+/// taken into memory. Errors call it `name`.
+openvdb::GridPtrVec readVdb(std::istream& stream, const std::string& name);
 
 }  // namespace bandvox

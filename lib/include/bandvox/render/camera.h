@@ -18,19 +18,23 @@ struct CameraOptions {
     enum class Projection { Perspective, Orthographic } projection = Projection::Perspective;
     std::optional<openvdb::Vec3d> eye;     ///< world; default: chosen so that the object fits
     std::optional<openvdb::Vec3d> lookat;  ///< world; default: the object is in the middle
-    openvdb::Vec3d up{0, 1, 0};            ///< world direction that points up in the picture
-    openvdb::Vec3d from{0.55, 0.35, 1};    ///< direction from the object to a chosen eye
-    double focal = 50;                     ///< focal length, mm; > 0 (perspective)
-    double aperture = 41.2136;             ///< width of the film, mm; > 0 (perspective)
-    double frame = 0;                      ///< width of the view, world; 0 fits (orthographic)
+    /// World direction that points up in the picture; default: y, or z where the view is along y.
+    std::optional<openvdb::Vec3d> up;
+    openvdb::Vec3d from{0.55, 0.35, 1};  ///< direction from the object to a chosen eye
+    double focal = 50;                   ///< focal length, mm; > 0 (perspective)
+    double aperture = 41.2136;           ///< width of the film, mm; > 0 (perspective)
+    double frame = 0;                    ///< width of the view, world; 0 fits (orthographic)
 };
+
+/// Throws Error(ErrorKind::Usage) for options that define no view of any object: eye and lookat
+/// the same, up along the view, a length that is not positive.
+void requireValid(const CameraOptions& options);
 
 /// A camera for pictures of `width` × `height` pixels.
 class Camera {
   public:
     /// `object` is the box to frame, world units, not empty.
-    /// Throws Error(ErrorKind::Usage) if the options do not define a view: eye and lookat the
-    /// same, up along the view, a length that is not positive.
+    /// Throws Error(ErrorKind::Usage) if the options do not define a view of it.
     Camera(const CameraOptions& options, int width, int height, const openvdb::BBoxd& object);
 
     /// The line of sight through a place of the picture, in pixels from its top left corner.

@@ -26,6 +26,10 @@ struct RenderOptions {
     std::optional<openvdb::Vec3d> background;  ///< linear; default: transparent
 };
 
+/// Throws Error(ErrorKind::Usage) for options out of range, as far as that does not depend on a
+/// grid.
+void requireValid(const RenderOptions& options);
+
 /// A picture and what it took.
 struct RenderResult {
     Image image;
@@ -40,7 +44,8 @@ struct RenderResult {
 ///
 /// Figure 7 and section 3.2 of Chiba, Aoki, Saito (1990), with signed frequencies.
 /// Throws Error(ErrorKind::Usage) for options out of range, Error(ErrorKind::Input) if the grid
-/// has no active voxel or is not a density, Error(ErrorKind::Result) if nothing is seen.
+/// has no active voxel or is not a density, holds values that are not finite or a stored iso-value
+/// that is not above its background, Error(ErrorKind::Result) if nothing is seen.
 RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptions& options = {},
                             Progress& progress = silentProgress());
 

@@ -9,6 +9,8 @@
 
 namespace bandvox {
 
+class AtomicFile;
+
 /// A picture, and what was seen at each of its pixels. Rows from the top.
 struct Image {
     int width = 0;
@@ -28,5 +30,8 @@ bool isImageFile(const std::filesystem::path& path);
 /// Throws Error(ErrorKind::Runtime) if it cannot be written, Error(ErrorKind::Usage) for another
 /// extension.
 void writeImage(const std::filesystem::path& path, const Image& image);
+
+/// The same to a file that the caller commits.
+void writeImage(AtomicFile& file, const Image& image);
 
 }  // namespace bandvox
