@@ -25,7 +25,12 @@ OptionEntry voxelSizeEntry() {
 }
 
 OptionEntry vdbOutputEntry() {
-    return {"output", 'o', "FILE", "", "The .vdb file to write; stdout.vdb is the standard output. Needed.", "Output"};
+    return {"output",
+            'o',
+            "FILE",
+            "",
+            "The .vdb file to write; stdout.vdb is the standard output. Needed.",
+            "Output"};
 }
 
 OptionEntry compressionEntry() {

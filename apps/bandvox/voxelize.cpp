@@ -105,9 +105,8 @@ void runVoxelize(const CommandLine& line) {
     sayResult(run, solid);
     run.warn(solid.result.warnings, ErrorKind::Result);
 
-    run.writeOutput(output, [&](AtomicFile& file) {
-        writeVdb(file, {solid.result.grid}, request.write);
-    });
+    run.writeOutput(output,
+                    [&](AtomicFile& file) { writeVdb(file, {solid.result.grid}, request.write); });
 }
 
 }  // namespace bandvox::app

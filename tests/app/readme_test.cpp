@@ -43,9 +43,8 @@ TEST(Readme, RunnableBlocksRun) {
             runProgram({"/bin/sh", "-e", "-c", path + block}, {.folder = folder.path()});
         EXPECT_EQ(result.status, 0) << block << result.err;
     }
-    for (const char* name :
-         {"bunny.vdb", "bunny.png", "bunny.exr", "bunny.json", "sharp.vdb", "voxels.png",
-          "piped.png"}) {
+    for (const char* name : {"bunny.vdb", "bunny.png", "bunny.exr", "bunny.json", "sharp.vdb",
+                             "voxels.png", "piped.png"}) {
         EXPECT_TRUE(fs::exists(folder / name)) << name;
     }
 }

@@ -37,8 +37,7 @@ TEST(MeshPrecision, CoordinatesFarFromTheOriginAreSaidOrRefused) {
 TEST(MeshPrecision, NumbersTooSmallForADoubleAreZero) {
     const test::TemporaryFolder folder;
     const auto read = [&](const std::string& number) {
-        return readMesh(
-            folder.write("a.obj", "v " + number + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+        return readMesh(folder.write("a.obj", "v " + number + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
     };
     for (const char* small : {"1e-400", "1E-400"}) {
         EXPECT_EQ(read(small).mesh.points.size(), 3U) << small;

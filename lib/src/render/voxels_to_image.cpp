@@ -79,7 +79,8 @@ class VoxelPicture {
             mScene.camera, buffer,
             mShading == Shading::Cross ? DepthNormals::kCross : DepthNormals::kSobel);
         forEachTile(mImage.width, mImage.height, progress, [&](const PixelBox& tile) {
-            tile.forEach(progress, [&](int column, int row) { shade(column, row, place, normals); });
+            tile.forEach(progress,
+                         [&](int column, int row) { shade(column, row, place, normals); });
         });
     }
 
