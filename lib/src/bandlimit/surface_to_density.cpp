@@ -1,6 +1,6 @@
 #include "bandlimit/density_column.h"
+#include "bandlimit/density_steps.h"
 #include "bandlimit/element_bins.h"
-#include "bandlimit/grid_assembly.h"
 #include "bandlimit/tile_filter.h"
 #include "bandlimit/tile_plan.h"
 #include "core/worker_pool.h"
@@ -9,73 +9,27 @@
 #include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>
 #include <bandvox/core/parallel.h>
-#include <bandvox/core/version.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 namespace bandvox {
 
 namespace {
 
-constexpr double kLowestTolerance = 1e-6;
-constexpr double kHighestTolerance = 0.05;
-constexpr int kHighestResolution = 1 << 20;
-constexpr int kLargestTile = 512;
-
-std::string inShort(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
-}
-
-void requireValid(const DensityOptions& options) {
-    requireValid(options.filter);
-    if (options.voxelSize == 0 &&
-        (options.resolution < 1 || options.resolution > kHighestResolution)) {
-        throw Error(ErrorKind::Usage, "the resolution is " + std::to_string(options.resolution) +
-                                          "; it must be between 1 and " +
-                                          std::to_string(kHighestResolution));
-    }
-    if (!(options.voxelSize >= 0 && std::isfinite(options.voxelSize))) {
-        throw Error(ErrorKind::Usage, "the voxel size is " + inShort(options.voxelSize) +
-                                          "; it must be positive, in world units");
-    }
-    if (!(options.tolerance >= kLowestTolerance && options.tolerance <= kHighestTolerance)) {
-        throw Error(ErrorKind::Usage, "the tolerance is " + inShort(options.tolerance) +
-                                          "; it must be between " + inShort(kLowestTolerance) +
-                                          " and " + inShort(kHighestTolerance));
-    }
-    if (options.tile < 0 || options.tile > kLargestTile || options.tile % 2 != 0) {
-        throw Error(ErrorKind::Usage, "the tile is " + std::to_string(options.tile) +
-                                          "; it must be an even number of voxels up to " +
-                                          std::to_string(kLargestTile) + ", or 0 to choose it");
-    }
-}
-
-double chooseVoxelSize(const BoundarySource& source, const DensityOptions& options) {
-    if (options.voxelSize > 0) return options.voxelSize;
-    const openvdb::Vec3d size = source.bounds().extents();
-    return std::max({size.x(), size.y(), size.z()}) / options.resolution;
-}
-
 // Bytes that the grid and the work on it will take, from the surface's area. The factors are
 // measured on meshes between 128³ and 1024³; they are meant to be a little high.
 double estimateMemory(const BoundarySource& source, const TilePlan& plan, const TileLayout& layout,
                       const TileFilter& filter) {
-    constexpr double kBytesPerLeaf = 2048 + 128;
-    constexpr double kBorderShare = 1.4;  // blocks at the columns' borders exist twice for a while
     const double area = source.area() / (layout.voxelSize * layout.voxelSize);
     const double thickness = plan.halo + DensityLeaf::DIM;  // of the leaves along the surface
     const double leaves = area * thickness / DensityLeaf::SIZE;
-    const double columns = static_cast<double>(layout.count.y()) * layout.count.z();
     const double perThread = 4.0 * static_cast<double>(filter.bufferSize()) +
                              4.0 * std::pow(plan.interior, 3) +
                              sizeof(SurfaceSample) * 8.0 * plan.side * plan.side;
-    return leaves * kBytesPerLeaf * kBorderShare + columns * 2 * sizeof(ColumnBlocks) +
-           12.0 * static_cast<double>(source.elementCount()) + threadCount() * perThread;
+    return memoryOfGrid(leaves, layout) + 12.0 * static_cast<double>(source.elementCount()) +
+           threadCount() * perThread;
 }
 
 // Fills all columns of tiles, in parallel.
@@ -105,15 +59,6 @@ std::vector<ColumnBlocks> fillColumns(const BoundarySource& source, const TilePl
     return columns;
 }
 
-void warnOfFilter(const ExponentialFilter& filter, double tolerance,
-                  std::vector<std::string>& warnings) {
-    if (filter.atNyquist() <= tolerance) return;
-    warnings.push_back("the lattice cannot hold a filter of order " + inShort(filter.order) +
-                       " and cutoff " + inShort(filter.cutoff) + ": at its highest frequency " +
-                       inShort(filter.atNyquist()) + " is left, above the tolerance of " +
-                       inShort(tolerance));
-}
-
 // Shells that overlap add up. Returns true if that happened, and says so.
 bool findOverlap(const ColumnStatistics& statistics, const ExponentialFilter& filter,
                  double tolerance, std::vector<std::string>& warnings) {
@@ -135,7 +80,7 @@ DensityResult surfaceToDensity(const BoundarySource& source, const DensityOption
                                Progress& progress) {
     // Decide how the work is cut up, and whether it fits.
     requireValid(options);
-    const double voxelSize = chooseVoxelSize(source, options);
+    const double voxelSize = chooseVoxelSize(source.bounds(), options);
     const TilePlan plan = makeTilePlan(options);
     const TileLayout layout = layOutTiles(source.bounds(), voxelSize, plan);
     const TileFilter filter(plan);
@@ -161,36 +106,16 @@ DensityResult surfaceToDensity(const BoundarySource& source, const DensityOption
         options.clamp;
 
     // Join the columns to one grid.
-    {
-        const ProgressStage stage(progress, "assembling", 0);
-        result.grid = assembleGrid(columns, {voxelSize, plan.threshold, clamp});
-    }
-    progress.throwIfInterrupted();
-    if (result.grid->tree().empty()) {
-        throw Error(ErrorKind::Result, source.name() + ": no voxel's density exceeds " +
-                                           inShort(plan.threshold) + "; the grid would be empty");
-    }
-    result.grid->setName("density");
-    result.grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-    result.grid->setCreator(std::string("bandvox ") + version());
-
     DensityMetadata& metadata = result.metadata;
-    metadata.version = version();
     metadata.source = source.name();
-    metadata.order = options.filter.order;
-    metadata.cutoff = options.filter.cutoff;
-    metadata.iso = options.iso;
-    metadata.tolerance = options.tolerance;
+    metadata.route = "exact";
     metadata.closureError = statistics.closureError;
     metadata.sourceVolume = source.volume();
-    metadata.gridVolume = densityIntegral(*result.grid);
     metadata.clamped = clamp;
-    setDensityMetadata(*result.grid, metadata);
+    finishGrid(columns, voxelSize, options, plan, result, progress);
 
     result.surfaceSamples = statistics.samples;
     result.tiles = statistics.tiles;
-    result.tileSide = plan.side;
-    result.halo = plan.halo;
     result.kernelWidth = plan.kernel.width();
     result.minimum = statistics.minimum;
     result.maximum = statistics.maximum;
