@@ -7,6 +7,7 @@
 #include "volume_options.h"
 #include "words.h"
 
+#include <bandvox/bandlimit/field_to_density.h>
 #include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/source/mesh_source.h>
@@ -23,11 +24,13 @@ namespace bandvox::app {
 namespace {
 
 constexpr int kLargestTile = 512;
+constexpr int kMostOversample = 64;
 
 struct ConvertRequest {
     std::string input;
     std::filesystem::path output;
-    DensityOptions density;
+    bool isSampled = false;     ///< by the sampled route
+    FieldDensityOptions field;  ///< `density` of it holds for the exact route, too
     VdbWriteOptions write;
 };
 
@@ -37,6 +40,24 @@ struct Solid {
     int holesCapped = 0;
 };
 
+void readRoute(const CommandLine& line, ConvertRequest& request) {
+    request.isSampled = line.choice("route", {"auto", "exact", "sampled"}, 0) == 2;
+    if (line.has("oversample") && !request.isSampled) {
+        throw Error(ErrorKind::Usage,
+                    "--oversample is for the sampled route; expected --route sampled with it");
+    }
+    if (request.isSampled && !isShape(request.input)) {
+        throw Error(ErrorKind::Usage,
+                    "--route sampled takes a built-in shape, by its formula, and "
+                    "'" +
+                        request.input +
+                        "' is none; a mesh takes the exact "
+                        "route");
+    }
+    request.field.oversample =
+        line.wholeNumber("oversample", 1, kMostOversample, request.field.oversample);
+}
+
 ConvertRequest parseConvert(const CommandLine& line) {
     ConvertRequest request;
     request.input = line.positional(0);
@@ -44,7 +65,8 @@ ConvertRequest parseConvert(const CommandLine& line) {
     requireExtension(output, {".vdb"});
     request.output = outputPath(output);
 
-    DensityOptions& density = request.density;
+    readRoute(line, request);
+    DensityOptions& density = request.field.density;
     readSize(line, density.resolution, density.voxelSize);
     density.filter.cutoff =
         line.number("cutoff", {.low = 0.01, .high = 0.5}, density.filter.cutoff);
@@ -74,6 +96,11 @@ Solid loadSolid(CommandRun& run, const std::string& input) {
     return solid;
 }
 
+/// What was measured of the route's own error, density.
+double errorOf(const DensityMetadata& metadata) {
+    return metadata.route == "sampled" ? metadata.samplingError : metadata.closureError;
+}
+
 void sayResult(CommandRun& run, const DensityResult& result) {
     const DensityMetadata& metadata = result.metadata;
     const auto activeVoxels = static_cast<std::int64_t>(result.grid->activeVoxelCount());
@@ -83,12 +110,16 @@ void sayResult(CommandRun& run, const DensityResult& result) {
             formatNumber(result.grid->voxelSize().x()) + ", " +
             formatCount(activeVoxels, "active voxel", "active voxels") + ", density " +
             formatNumber(result.minimum) + " to " + formatNumber(result.maximum));
-    run.sayMore("tiles    " + std::to_string(result.tiles) + " of side " +
-                std::to_string(result.tileSide) + " with a halo of " + std::to_string(result.halo) +
-                ", spread over " + std::to_string(result.kernelWidth) + " voxels from " +
-                formatCount(result.surfaceSamples, "surface sample", "surface samples"));
-    run.say("error    " + formatNumber(metadata.closureError, 2) +
-            " measured by closure, tolerance " + formatNumber(metadata.tolerance, 2));
+    const bool isSampled = metadata.route == "sampled";
+    run.sayMore(
+        "tiles    " + std::to_string(result.tiles) + " of side " + std::to_string(result.tileSide) +
+        " with a halo of " + std::to_string(result.halo) +
+        (isSampled ? ", from " + formatCount(result.fieldSamples, "sample", "samples")
+                   : ", spread over " + std::to_string(result.kernelWidth) + " voxels from " +
+                         formatCount(result.surfaceSamples, "surface sample", "surface samples")));
+    run.say("error    " + formatNumber(errorOf(metadata), 2) + " measured by " +
+            (isSampled ? "halving the samples" : "closure") + ", tolerance " +
+            formatNumber(metadata.tolerance, 2));
     const double difference =
         metadata.sourceVolume != 0
             ? std::abs(metadata.gridVolume - metadata.sourceVolume) / metadata.sourceVolume
@@ -99,6 +130,7 @@ void sayResult(CommandRun& run, const DensityResult& result) {
 
     run.count("active_voxels", activeVoxels);
     run.count("surface_samples", result.surfaceSamples);
+    run.count("field_samples", result.fieldSamples);
     run.count("tiles", result.tiles);
     run.count("tile_side", result.tileSide);
     run.count("halo", result.halo);
@@ -106,8 +138,25 @@ void sayResult(CommandRun& run, const DensityResult& result) {
     run.count("spread_thread_seconds", result.spreadSeconds);
     run.count("transform_thread_seconds", result.transformSeconds);
     run.count("closure_error", metadata.closureError);
+    run.count("sampling_error", metadata.samplingError);
     run.count("source_volume", metadata.sourceVolume);
     run.count("grid_volume", metadata.gridVolume);
+}
+
+DensityResult toDensity(CommandRun& run, const ConvertRequest& request) {
+    if (!request.isSampled) {
+        const Solid solid = loadSolid(run, request.input);
+        DensityResult result =
+            surfaceToDensity(*solid.source, request.field.density, run.progress());
+        result.metadata.holesCapped = solid.holesCapped;
+        return result;
+    }
+    const auto field = makeShapeField(request.input);
+    run.say("read     " + request.input);
+    DensityResult result = fieldToDensity(*field, request.field, run.progress());
+    // Of a shape, unlike other fields, the volume is known.
+    result.metadata.sourceVolume = makeShapeBoundary(request.input)->volume();
+    return result;
 }
 
 }  // namespace
@@ -139,6 +188,14 @@ const CommandTable& convertTable() {
                 {"tile", 0, "N", "chosen",
                  "Side of the cube that is filtered at a time, in voxels, even, at most 512.",
                  filter},
+                {"route", 0, "KIND", "auto",
+                 "exact: from the surface itself. sampled: from samples of a shape's formula, "
+                 "which alias a little. auto: exact, where there is a surface.",
+                 filter},
+                {"oversample", 0, "P", std::to_string(FieldDensityOptions().oversample),
+                 "Samples along a voxel's side on the sampled route, 1 to 64; an even number has "
+                 "its error measured.",
+                 filter},
                 {"clamp", 0, "", "", "Limit the density to 0 .. 1, which cuts off ringing.",
                  filter},
                 {"iso", 0, "D", formatNumber(density.iso),
@@ -165,9 +222,7 @@ void runConvert(const CommandLine& line) {
     CommandRun run(line);
     AtomicFile output(request.output);
 
-    Solid solid = loadSolid(run, request.input);
-    DensityResult result = surfaceToDensity(*solid.source, request.density, run.progress());
-    result.metadata.holesCapped = solid.holesCapped;
+    DensityResult result = toDensity(run, request);
     setDensityMetadata(*result.grid, result.metadata);
     sayResult(run, result);
     run.warn(result.warnings, ErrorKind::Result);

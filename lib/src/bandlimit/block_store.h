@@ -2,6 +2,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -64,6 +65,23 @@ class BlockStore {
     std::vector<std::uint16_t> mFilled;  // voxels set of each block
     ColumnBlocks mBlocks;
 };
+
+/// Calls visit(box) for the part of each 8³ block that lies in `box`.
+template <typename Visitor>
+void forEachBlock(const openvdb::CoordBBox& box, const Visitor& visit) {
+    constexpr int kMask = DensityLeaf::DIM - 1;
+    const openvdb::Coord low = box.min();
+    const openvdb::Coord high = box.max();
+    for (int x = low.x(); x <= high.x(); x = (x | kMask) + 1) {
+        for (int y = low.y(); y <= high.y(); y = (y | kMask) + 1) {
+            for (int z = low.z(); z <= high.z(); z = (z | kMask) + 1) {
+                visit(openvdb::CoordBBox(x, y, z, std::min(x | kMask, high.x()),
+                                         std::min(y | kMask, high.y()),
+                                         std::min(z | kMask, high.z())));
+            }
+        }
+    }
+}
 
 /// The whole number that all values of a leaf are within `threshold` of, if there is one.
 bool isConstant(const DensityLeaf& leaf, float threshold, float& value);

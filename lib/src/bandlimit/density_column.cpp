@@ -15,23 +15,6 @@ double now() {
         .count();
 }
 
-// Calls visit(box) for the part of each 8³ block that lies in `box`.
-template <typename Visitor>
-void forEachBlock(const openvdb::CoordBBox& box, const Visitor& visit) {
-    constexpr int kMask = DensityLeaf::DIM - 1;
-    const openvdb::Coord low = box.min();
-    const openvdb::Coord high = box.max();
-    for (int x = low.x(); x <= high.x(); x = (x | kMask) + 1) {
-        for (int y = low.y(); y <= high.y(); y = (y | kMask) + 1) {
-            for (int z = low.z(); z <= high.z(); z = (z | kMask) + 1) {
-                visit(openvdb::CoordBBox(x, y, z, std::min(x | kMask, high.x()),
-                                         std::min(y | kMask, high.y()),
-                                         std::min(z | kMask, high.z())));
-            }
-        }
-    }
-}
-
 }  // namespace
 
 void ColumnStatistics::add(const ColumnStatistics& other) {

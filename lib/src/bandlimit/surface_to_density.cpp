@@ -1,6 +1,6 @@
 #include "bandlimit/density_column.h"
+#include "bandlimit/density_steps.h"
 #include "bandlimit/element_bins.h"
-#include "bandlimit/grid_assembly.h"
 #include "bandlimit/tile_filter.h"
 #include "bandlimit/tile_plan.h"
 #include "core/words.h"
@@ -10,7 +10,6 @@
 #include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>
 #include <bandvox/core/parallel.h>
-#include <bandvox/core/version.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,77 +19,24 @@ namespace bandvox {
 
 namespace {
 
-constexpr double kLowestTolerance = 1e-6;
-constexpr double kHighestTolerance = 0.05;
-constexpr int kHighestResolution = 1 << 20;
-constexpr int kLargestTile = 512;
-constexpr double kSmallestVoxel = 1e-14;  // world units; a scale below 1e-15 is 0 to OpenVDB
-
 // How far the integral may be from the volume, in tolerances, before it is worth a word.
 constexpr double kVolumeMargin = 10;
 
-void requireValid(const DensityOptions& options) {
-    requireValid(options.filter);
-    if (options.voxelSize == 0 &&
-        (options.resolution < 1 || options.resolution > kHighestResolution)) {
-        throw Error(ErrorKind::Usage, "the resolution is " + std::to_string(options.resolution) +
-                                          "; it must be between 1 and " +
-                                          std::to_string(kHighestResolution));
-    }
-    if (!(options.voxelSize >= 0 && std::isfinite(options.voxelSize))) {
-        throw Error(ErrorKind::Usage, "the voxel size is " + inShort(options.voxelSize) +
-                                          "; it must be positive, in world units");
-    }
-    if (!(options.tolerance >= kLowestTolerance && options.tolerance <= kHighestTolerance)) {
-        throw Error(ErrorKind::Usage, "the tolerance is " + inShort(options.tolerance) +
-                                          "; it must be between " + inShort(kLowestTolerance) +
-                                          " and " + inShort(kHighestTolerance));
-    }
-    if (options.tile < 0 || options.tile > kLargestTile || options.tile % 2 != 0) {
-        throw Error(ErrorKind::Usage, "the tile is " + std::to_string(options.tile) +
-                                          "; it must be an even number of voxels up to " +
-                                          std::to_string(kLargestTile) + ", or 0 to choose it");
-    }
-}
-
-double chooseVoxelSize(const BoundarySource& source, const DensityOptions& options) {
-    double voxelSize = options.voxelSize;
-    if (voxelSize == 0) {
-        const openvdb::Vec3d size = source.bounds().extents();
-        voxelSize = std::max({size.x(), size.y(), size.z()}) / options.resolution;
-    }
-    if (voxelSize < kSmallestVoxel) {
-        throw Error(options.voxelSize > 0 ? ErrorKind::Usage : ErrorKind::Input,
-                    source.name() + ": a voxel would be " + inShort(voxelSize) +
-                        " world units, and OpenVDB's transforms take no less than " +
-                        inShort(kSmallestVoxel) + "; scale the object up");
-    }
-    return voxelSize;
-}
-
-// Bytes that the grid will take, from the surface's area: its leaves, those at the columns'
-// borders twice for a while, and the inner nodes above them. A little high, by measurements on
-// meshes between 128³ and 1024³.
+// Bytes that the grid will take, from the surface's area.
 double estimateGridMemory(const BoundarySource& source, double voxelSize, const TilePlan& plan) {
-    constexpr double kBytesPerLeaf = 2048 + 128;
-    constexpr double kBorderShare = 2;
-    constexpr double kBytesPerNode = 36e3;
-    constexpr double kNodeFace = 128 * 128;
     const double area = source.area() / (voxelSize * voxelSize);
     const double thickness = 2 * plan.halo + DensityLeaf::DIM;  // of the leaves along the surface
-    const double leaves = area * thickness / DensityLeaf::SIZE;
-    return leaves * kBytesPerLeaf * kBorderShare + 2 * area / kNodeFace * kBytesPerNode;
+    return memoryOfGrid(area * thickness / DensityLeaf::SIZE);
 }
 
 // Bytes that the work on it takes besides.
 double estimateWorkMemory(const BoundarySource& source, const TilePlan& plan,
                           const TileLayout& layout, const TileFilter& filter) {
-    const double columns = static_cast<double>(layout.count.y()) * layout.count.z();
     const double perThread = 4.0 * static_cast<double>(filter.bufferSize()) +
                              4.0 * std::pow(plan.interior, 3) +
                              sizeof(SurfaceSample) * 8.0 * plan.side * plan.side;
-    return columns * (2 * sizeof(ColumnBlocks) + sizeof(float) * layout.count.x()) +
-           12.0 * static_cast<double>(source.elementCount()) + threadCount() * perThread;
+    return memoryOfColumns(layout) + 12.0 * static_cast<double>(source.elementCount()) +
+           threadCount() * perThread;
 }
 
 // Fills all columns of tiles, in parallel.
@@ -118,15 +64,6 @@ std::vector<ColumnBlocks> fillColumns(const BoundarySource& source, const TilePl
     });
     for (const ColumnStatistics& column : perColumn) statistics.add(column);
     return columns;
-}
-
-void warnOfFilter(const ExponentialFilter& filter, double tolerance,
-                  std::vector<std::string>& warnings) {
-    if (filter.atNyquist() <= tolerance) return;
-    warnings.push_back("the lattice cannot hold a filter of order " + inShort(filter.order) +
-                       " and cutoff " + inShort(filter.cutoff) + ": at its highest frequency " +
-                       inShort(filter.atNyquist()) + " is left, above the tolerance of " +
-                       inShort(tolerance));
 }
 
 // Shells that overlap add up. Returns true if that happened, and says so.
@@ -160,7 +97,7 @@ DensityResult surfaceToDensity(const BoundarySource& source, const DensityOption
                                Progress& progress) {
     // Decide how the work is cut up, and whether it fits.
     requireValid(options);
-    const double voxelSize = chooseVoxelSize(source, options);
+    const double voxelSize = chooseVoxelSize(source.name(), source.bounds(), options);
     const TilePlan plan = makeTilePlan(options);
     const std::string wanted = "a grid of voxels of " + inShort(voxelSize) + " world units";
     const double gridMemory = estimateGridMemory(source, voxelSize, plan);
@@ -188,37 +125,17 @@ DensityResult surfaceToDensity(const BoundarySource& source, const DensityOption
     const bool clamp = isOverlapping || options.clamp;
 
     // Join the columns to one grid.
-    {
-        const ProgressStage stage(progress, "assembling", 0);
-        result.grid = assembleGrid(columns, layout, {plan.threshold, clamp});
-    }
-    progress.throwIfInterrupted();
-    if (result.grid->tree().empty()) {
-        throw Error(ErrorKind::Result, source.name() + ": no voxel's density exceeds " +
-                                           inShort(plan.threshold) + "; the grid would be empty");
-    }
-    result.grid->setName("density");
-    result.grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-    result.grid->setCreator(std::string("bandvox ") + version());
-
     DensityMetadata& metadata = result.metadata;
-    metadata.version = version();
     metadata.source = source.name();
-    metadata.order = options.filter.order;
-    metadata.cutoff = options.filter.cutoff;
-    metadata.iso = options.iso;
-    metadata.tolerance = options.tolerance;
+    metadata.route = "exact";
     metadata.closureError = statistics.closureError;
     metadata.sourceVolume = source.volume();
-    metadata.gridVolume = densityIntegral(*result.grid);
     metadata.clamped = clamp;
-    setDensityMetadata(*result.grid, metadata);
+    finishGrid(columns, layout, options, plan, result, progress);
     if (!clamp) warnOfVolume(metadata, result.warnings);
 
     result.surfaceSamples = statistics.samples;
     result.tiles = statistics.tiles;
-    result.tileSide = plan.side;
-    result.halo = plan.halo;
     result.kernelWidth = plan.kernel.width();
     result.minimum = statistics.minimum;
     result.maximum = statistics.maximum;

@@ -47,33 +47,34 @@ SpreadingKernel chooseKernel(const ExponentialFilter& filter, double tolerance) 
 
 }  // namespace
 
-TilePlan makeTilePlan(const DensityOptions& options) {
-    const int halo =
+TileGeometry makeTileGeometry(const DensityOptions& options, int leastHalo) {
+    const int reach =
         static_cast<int>(std::ceil(filterReach(options.filter, kHaloShare * options.tolerance)));
-    SpreadingKernel kernel = chooseKernel(options.filter, kKernelShare * options.tolerance);
-    // Nodes are counted from half a kernel's width before the tile, which has to be halo.
-    const int usedHalo = std::max(halo, kernel.width() / 2 + 2);
-    const int side = options.tile > 0 ? options.tile : chooseSide(usedHalo);
-    if (side - 2 * usedHalo < 2) {
+    const int halo = std::max(reach, leastHalo);
+    const int side = options.tile > 0 ? options.tile : chooseSide(halo);
+    if (side - 2 * halo < 2) {
         throw Error(ErrorKind::Usage,
                     "a tile of " + std::to_string(side) +
                         " voxels does not hold its halo: the "
                         "filter reaches " +
-                        std::to_string(usedHalo) +
+                        std::to_string(halo) +
                         " voxels on each side at this tolerance, so it must be at least " +
-                        std::to_string(2 * usedHalo + 2));
+                        std::to_string(2 * halo + 2));
     }
-    return TilePlan{options.filter,
-                    options.tolerance,
-                    std::move(kernel),
-                    chooseQuadrature(options.filter, kQuadratureShare * options.tolerance),
-                    usedHalo,
-                    side,
-                    side - 2 * usedHalo,
-                    kStorageShare * options.tolerance};
+    return TileGeometry{options.filter, options.tolerance, halo,
+                        side,           side - 2 * halo,   kStorageShare * options.tolerance};
 }
 
-TileLayout layOutTiles(const openvdb::BBoxd& bounds, double voxelSize, const TilePlan& plan) {
+TilePlan makeTilePlan(const DensityOptions& options) {
+    SpreadingKernel kernel = chooseKernel(options.filter, kKernelShare * options.tolerance);
+    // Nodes are counted from half a kernel's width before the tile, which has to be halo.
+    const TileGeometry geometry = makeTileGeometry(options, kernel.width() / 2 + 2);
+    return TilePlan{geometry, std::move(kernel),
+                    chooseQuadrature(options.filter, kQuadratureShare * options.tolerance)};
+}
+
+TileLayout layOutTiles(const openvdb::BBoxd& bounds, double voxelSize,
+                       const TileGeometry& geometry) {
     const openvdb::Vec3d low = bounds.min() / voxelSize;
     const openvdb::Vec3d high = bounds.max() / voxelSize;
     openvdb::Coord origin, count;
@@ -87,11 +88,11 @@ TileLayout layOutTiles(const openvdb::BBoxd& bounds, double voxelSize, const Til
         }
         // The density reaches as far as the filter does; one voxel more makes the first
         // difference start from 0.
-        origin[axis] = static_cast<int>(std::floor(low[axis])) - plan.halo - 1;
-        const int end = static_cast<int>(std::ceil(high[axis])) + plan.halo + 2;
-        count[axis] = (end - origin[axis] + plan.interior - 1) / plan.interior;
+        origin[axis] = static_cast<int>(std::floor(low[axis])) - geometry.halo - 1;
+        const int end = static_cast<int>(std::ceil(high[axis])) + geometry.halo + 2;
+        count[axis] = (end - origin[axis] + geometry.interior - 1) / geometry.interior;
     }
-    return TileLayout{voxelSize, origin, count, plan.interior};
+    return TileLayout{voxelSize, origin, count, geometry.interior};
 }
 
 }  // namespace bandvox

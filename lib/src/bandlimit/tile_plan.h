@@ -1,6 +1,6 @@
 #pragma once
 
-#include <bandvox/bandlimit/surface_to_density.h>
+#include <bandvox/bandlimit/density.h>
 #include <bandvox/source/quadrature.h>
 #include <bandvox/spectral/spreading_kernel.h>
 
@@ -9,20 +9,28 @@
 
 namespace bandvox {
 
-/// How the tolerance is divided, and what follows from it for the work in a tile. All lengths
+/// What of the tolerance concerns tiles whatever fills them, and what follows from it. All lengths
 /// in voxels. docs/math/exact-route.md derives the shares.
-struct TilePlan {
+struct TileGeometry {
     ExponentialFilter filter;
     double tolerance;
-    SpreadingKernel kernel;
-    SurfaceQuadrature quadrature;
     int halo;          ///< on each side of the interior; the filter's reach, rounded up
     int side;          ///< of the cube that is transformed
     int interior;      ///< side - 2 halo: of the cube that is kept
     double threshold;  ///< density; values nearer to a whole number than this are stored as it
 };
 
-/// Throws Error(ErrorKind::Usage) if the tile asked for does not hold its own halo.
+/// The halo is no less than `leastHalo`. Throws Error(ErrorKind::Usage) if the tile asked for does
+/// not hold its own halo.
+TileGeometry makeTileGeometry(const DensityOptions& options, int leastHalo = 0);
+
+/// The same, and what the exact route needs beside it.
+struct TilePlan : TileGeometry {
+    SpreadingKernel kernel;
+    SurfaceQuadrature quadrature;
+};
+
+/// Throws as makeTileGeometry.
 TilePlan makeTilePlan(const DensityOptions& options);
 
 /// Where the tiles lie. The layout moves with the object by whole voxels, so that a shifted
@@ -41,6 +49,7 @@ struct TileLayout {
 };
 
 /// Throws Error(ErrorKind::Usage) if voxel indices would not fit OpenVDB's.
-TileLayout layOutTiles(const openvdb::BBoxd& bounds, double voxelSize, const TilePlan& plan);
+TileLayout layOutTiles(const openvdb::BBoxd& bounds, double voxelSize,
+                       const TileGeometry& geometry);
 
 }  // namespace bandvox

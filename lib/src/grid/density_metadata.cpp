@@ -21,6 +21,7 @@ void visitMembers(Metadata& metadata, const Visitor& visit) {
     visit("iso", metadata.iso);
     visit("tolerance", metadata.tolerance);
     visit("closure_error", metadata.closureError);
+    visit("sampling_error", metadata.samplingError);
     visit("source_volume", metadata.sourceVolume);
     visit("grid_volume", metadata.gridVolume);
     visit("holes_capped", metadata.holesCapped);

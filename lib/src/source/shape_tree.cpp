@@ -1,5 +1,7 @@
 #include "source/shape_tree.h"
 
+#include "source/solid_formula.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -32,6 +34,7 @@ TreeShape::TreeShape() {
     constexpr double kFar = 1e3;
     grow(trunk, {{-kFar, -kFar}, {kFar, kFar}}, {0.0, 0.0}, 0);
     fitToBox();
+    boundBranches();
 }
 
 /// Adds a branch and all that grows from it, within `room`, and returns its index.
@@ -43,8 +46,6 @@ int TreeShape::grow(const Branch& sprout, const Rectangle& room, const double (&
 
     const int axis = level % 2;
     const double split = 0.5 * (sprout.top.min[axis] + sprout.top.max[axis]);
-    mBranches[index].splitAxis = axis;
-    mBranches[index].split = split;
     for (int side = 0; side < 2; ++side) {
         // Give the child its half of the foot and of the room.
         const double outward = side == 0 ? -1.0 : 1.0;
@@ -104,27 +105,95 @@ void TreeShape::fitToBox() {
                 fit(r->max[a], a);
             }
         }
-        fit(b.split, b.splitAxis);
     }
 }
 
-bool TreeShape::contains(const Vec3d& point) const {
-    const double p[2] = {point.x(), point.z()};
-    int index = 0;
-    while (index >= 0) {
-        const Branch& b = mBranches[index];
-        if (point.y() < b.y0) return false;
-        if (point.y() <= b.y1) {
-            const double t = (point.y() - b.y0) / (b.y1 - b.y0);
-            for (int a = 0; a < 2; ++a) {
-                if (p[a] < std::lerp(b.foot.min[a], b.top.min[a], t)) return false;
-                if (p[a] > std::lerp(b.foot.max[a], b.top.max[a], t)) return false;
-            }
-            return true;
+void TreeShape::boundBranches() {
+    // Children come after their parents.
+    for (auto b = mBranches.rbegin(); b != mBranches.rend(); ++b) {
+        b->bounds = openvdb::BBoxd();
+        for (const auto& [r, y] : {std::pair(b->foot, b->y0), std::pair(b->top, b->y1)}) {
+            b->bounds.expand(Vec3d(r.min[0], y, r.min[1]));
+            b->bounds.expand(Vec3d(r.max[0], y, r.max[1]));
         }
-        index = b.children[p[b.splitAxis] < b.split ? 0 : 1];
+        for (const int child : b->children) {
+            if (child >= 0) b->bounds.expand(mBranches[child].bounds);
+        }
     }
-    return false;
+}
+
+/// Calls visit(value, slope) for each plane of a branch, for the signed distance along an axis
+/// value + slope·p that is ≤ 0 inside.
+template <typename Visitor>
+void TreeShape::visitPlanes(const Branch& b, const Visitor& visit) {
+    visit(b.y0, Vec3d(0.0, -1.0, 0.0));
+    visit(-b.y1, Vec3d(0.0, 1.0, 0.0));
+    for (int a = 0; a < 2; ++a) {
+        Vec3d along(0.0);
+        along[2 * a] = 1.0;
+        // The faces lean: they stand at foot + lean·(y - y0).
+        const double low = (b.top.min[a] - b.foot.min[a]) / (b.y1 - b.y0);
+        const double high = (b.top.max[a] - b.foot.max[a]) / (b.y1 - b.y0);
+        visit(b.foot.min[a] - low * b.y0, Vec3d(0.0, low, 0.0) - along);
+        visit(-b.foot.max[a] + high * b.y0, along - Vec3d(0.0, high, 0.0));
+    }
+}
+
+void TreeShape::cross(SolidRow& row) const {
+    crossBranch(0, row);
+}
+
+/// Fills the row where it runs inside a branch or what grows from it.
+void TreeShape::crossBranch(int index, SolidRow& row) const {
+    const Branch& b = mBranches[index];
+    LineInterval near = row.whole();
+    for (int axis = 0; axis < 3; ++axis) {
+        near.clip(row.start[axis] - b.bounds.max()[axis], row.step[axis]);
+        near.clip(b.bounds.min()[axis] - row.start[axis], -row.step[axis]);
+    }
+    // A row that only touches the box is not worth telling apart from one that misses it by
+    // rounding.
+    if (near.low > near.high + 1) return;
+    LineInterval inside = row.whole();
+    visitPlanes(b, [&](double value, const Vec3d& slope) {
+        inside.clip(value + slope.dot(row.start), slope.dot(row.step));
+    });
+    row.fill(inside);
+    for (const int child : b.children) {
+        if (child >= 0) crossBranch(child, row);
+    }
+}
+
+std::optional<bool> TreeShape::constantIn(const openvdb::BBoxd& box) const {
+    bool isInside = false;
+    if (isOutside(0, box, isInside)) return false;
+    return isInside ? std::optional(true) : std::nullopt;
+}
+
+/// True if the box is outside a branch and all that grows from it. Sets `isInside` if it is
+/// inside one of them.
+bool TreeShape::isOutside(int index, const openvdb::BBoxd& box, bool& isInside) const {
+    const Branch& b = mBranches[index];
+    openvdb::BBoxd reach = b.bounds;
+    reach.expand(kBoxMargin);
+    if (!reach.hasOverlap(box)) return true;
+    const Vec3d center = box.getCenter();
+    const Vec3d half = 0.5 * box.extents();
+    bool beyond = false;
+    bool within = true;
+    visitPlanes(b, [&](double value, const Vec3d& slope) {
+        const double middle = value + slope.dot(center);
+        double spread = 0.0;
+        for (int axis = 0; axis < 3; ++axis) spread += std::abs(slope[axis]) * half[axis];
+        const double margin = kBoxMargin * (1.0 + std::abs(slope.y()));
+        beyond = beyond || middle - spread > margin;
+        within = within && middle + spread <= -margin;
+    });
+    isInside = isInside || within;
+    for (const int child : b.children) {
+        if (child >= 0) beyond = isOutside(child, box, isInside) && beyond;
+    }
+    return beyond;
 }
 
 double TreeShape::volume() const {

@@ -3,10 +3,14 @@
 #include "source/patch.h"
 
 #include <openvdb/Types.h>
+#include <openvdb/math/BBox.h>
 
+#include <optional>
 #include <vector>
 
 namespace bandvox {
+
+class SolidRow;
 
 /// A tree that branches in two again and again, up along y, in [-1, 1]³.
 ///
@@ -18,7 +22,12 @@ class TreeShape {
   public:
     TreeShape();
 
-    bool contains(const openvdb::Vec3d& point) const;
+    /// Fills the row where it runs inside.
+    void cross(SolidRow& row) const;
+
+    /// True or false if all of `box` is certain to be inside or outside.
+    std::optional<bool> constantIn(const openvdb::BBoxd& box) const;
+
     double volume() const;
 
     /// Appends the surface as plane quadrilaterals and returns its area.
@@ -32,13 +41,17 @@ class TreeShape {
     struct Branch {
         double y0, y1;
         Rectangle foot, top;
-        int splitAxis = 0;
-        double split = 0;            ///< plane between the children
+        openvdb::BBoxd bounds;       ///< of it and all that grows from it
         int children[2] = {-1, -1};  ///< both or none
     };
 
     int grow(const Branch& sprout, const Rectangle& room, const double (&lean)[2], int level);
     void fitToBox();
+    void boundBranches();
+    template <typename Visitor>
+    static void visitPlanes(const Branch& branch, const Visitor& visit);
+    void crossBranch(int index, SolidRow& row) const;
+    bool isOutside(int index, const openvdb::BBoxd& box, bool& isInside) const;
 
     std::vector<Branch> mBranches;  ///< the trunk first
 };

@@ -1,6 +1,7 @@
 #include "source/patch_source.h"
 #include "source/revolution_patch.h"
 #include "source/shape_tree.h"
+#include "source/solid_formula.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/source/shapes.h>
@@ -36,7 +37,7 @@ double hyperboloidSlope() {
 struct Shape {
     std::string name;
     std::function<std::unique_ptr<BoundarySource>(std::string)> boundary;
-    std::function<bool(const Vec3d&)> contains;
+    std::function<std::unique_ptr<SolidFormula>()> formula;
 };
 
 std::unique_ptr<BoundarySource> makeHyperboloid(std::string name) {
@@ -132,35 +133,27 @@ std::unique_ptr<BoundarySource> makeTree(std::string name) {
                                          area);
 }
 
-bool hyperboloidContains(const Vec3d& p) {
-    const double slope = hyperboloidSlope();
-    return std::abs(p.y()) <= 1.0 &&
-           p.x() * p.x() + p.z() * p.z() <=
-               kHyperboloidWaist * kHyperboloidWaist + slope * slope * p.y() * p.y();
+std::unique_ptr<SolidFormula> sphereFormula() {
+    return std::make_unique<BallsFormula>(std::vector{Vec3d(0.0)}, 1.0);
 }
 
-bool twoBallsContain(const Vec3d& p) {
-    const double x = std::abs(p.x()) - kBallCenter;
-    return x * x + p.y() * p.y() + p.z() * p.z() <= kBallRadius * kBallRadius;
+std::unique_ptr<SolidFormula> twoBallsFormula() {
+    return std::make_unique<BallsFormula>(
+        std::vector{Vec3d(-kBallCenter, 0.0, 0.0), Vec3d(kBallCenter, 0.0, 0.0)}, kBallRadius);
 }
 
-bool cubeContains(const Vec3d& p) {
-    return std::abs(p.x()) <= 1.0 && std::abs(p.y()) <= 1.0 && std::abs(p.z()) <= 1.0;
-}
-
-bool torusContains(const Vec3d& p) {
-    const double r = std::hypot(p.x(), p.z()) - kTorusRing;
-    return r * r + p.y() * p.y() <= kTorusTube * kTorusTube;
+std::unique_ptr<SolidFormula> hyperboloidFormula() {
+    return std::make_unique<HyperboloidFormula>(kHyperboloidWaist, hyperboloidSlope());
 }
 
 const std::vector<Shape>& shapes() {
     static const std::vector<Shape> list = {
-        {"hyperboloid", makeHyperboloid, hyperboloidContains},
-        {"sphere", makeSphere, [](const Vec3d& p) { return p.lengthSqr() <= 1.0; }},
-        {"cube", makeCube, cubeContains},
-        {"torus", makeTorus, torusContains},
-        {"two-balls", makeTwoBalls, twoBallsContain},
-        {"tree", makeTree, [](const Vec3d& p) { return tree().contains(p); }},
+        {"hyperboloid", makeHyperboloid, hyperboloidFormula},
+        {"sphere", makeSphere, sphereFormula},
+        {"cube", makeCube, [] { return std::make_unique<CubeFormula>(1.0); }},
+        {"torus", makeTorus, [] { return std::make_unique<TorusFormula>(kTorusRing, kTorusTube); }},
+        {"two-balls", makeTwoBalls, twoBallsFormula},
+        {"tree", makeTree, [] { return std::make_unique<TreeFormula>(tree()); }},
     };
     return list;
 }
@@ -182,21 +175,24 @@ const Shape& findShape(std::string_view input) {
 /// A shape as a formula.
 class ShapeField final : public FieldSource {
   public:
-    ShapeField(std::string name, const BBoxd& bounds, std::function<bool(const Vec3d&)> contains)
-        : mName(std::move(name)), mBounds(bounds), mContains(std::move(contains)) {}
+    ShapeField(std::string name, const BBoxd& bounds, std::unique_ptr<SolidFormula> formula)
+        : mName(std::move(name)), mBounds(bounds), mFormula(std::move(formula)) {}
 
     std::string name() const override { return mName; }
     BBoxd bounds() const override { return mBounds; }
     void sampleRow(const Vec3d& start, const Vec3d& step, std::span<float> values) const override {
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            values[i] = mContains(start + static_cast<double>(i) * step) ? 1.0f : 0.0f;
-        }
+        SolidRow row(start, step, values);
+        mFormula->cross(row);
+    }
+    std::optional<float> constantIn(const BBoxd& box) const override {
+        const std::optional<bool> isInside = mFormula->constantIn(box);
+        return isInside ? std::optional(*isInside ? 1.0F : 0.0F) : std::nullopt;
     }
 
   private:
     std::string mName;
     BBoxd mBounds;
-    std::function<bool(const Vec3d&)> mContains;
+    std::unique_ptr<SolidFormula> mFormula;
 };
 
 }  // namespace
@@ -221,7 +217,7 @@ std::unique_ptr<BoundarySource> makeShapeBoundary(std::string_view input) {
 std::unique_ptr<FieldSource> makeShapeField(std::string_view input) {
     const Shape& shape = findShape(input);
     const std::string name(input);
-    return std::make_unique<ShapeField>(name, shape.boundary(name)->bounds(), shape.contains);
+    return std::make_unique<ShapeField>(name, shape.boundary(name)->bounds(), shape.formula());
 }
 
 }  // namespace bandvox

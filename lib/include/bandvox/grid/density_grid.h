@@ -23,9 +23,12 @@ struct DensityMetadata {
     double cutoff = 0;            ///< of the exponential filter, cycles per voxel
     double oversampling = 0;      ///< R/N of the sampled route; 0 for the exact route
     double iso = 0.5;             ///< density that is the surface
-    double tolerance = 0;         ///< error asked for, density
-    double closureError = 0;      ///< error measured while writing, density
-    double sourceVolume = 0;      ///< enclosed by the source, world units³
+    double tolerance = 0;         ///< error asked for, that of sampling apart, density
+    double closureError = 0;      ///< measured by the exact route while writing, density
+    double samplingError = 0;     ///< measured by the sampled route while writing, density; NaN if
+                                  ///< it is not known, 0 for the exact route
+    double sourceVolume = 0;      ///< enclosed by the source, world units³; 0 if it is not known,
+                                  ///< as it is not for a field
     double gridVolume = 0;        ///< integral of the density, world units³
     int holesCapped = 0;          ///< boundary loops of the source that were closed
     bool clamped = false;         ///< values were limited to [0, 1]

@@ -3,6 +3,7 @@
 #include <openvdb/Types.h>
 #include <openvdb/math/BBox.h>
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -21,6 +22,12 @@ class FieldSource {
 
     /// A box outside which the field is 0, world units.
     virtual openvdb::BBoxd bounds() const = 0;
+
+    /// The value that the field has everywhere in `box` (world units), if that is cheap to know. It
+    /// may say nothing of a box in which the field is constant, but is never wrong.
+    virtual std::optional<float> constantIn(const openvdb::BBoxd& /*box*/) const {
+        return std::nullopt;
+    }
 
     /// Sets values[i] to the field at `start + i·step`, world units.
     virtual void sampleRow(const openvdb::Vec3d& start, const openvdb::Vec3d& step,

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <bandvox/grid/density_grid.h>
+#include <bandvox/spectral/exponential_filter.h>
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace bandvox {
+
+/// How a solid is band-limited.
+struct DensityOptions {
+    int resolution = 256;      ///< voxels along the longest side of the source's box; ≥ 1
+    double voxelSize = 0;      ///< world units; if > 0 it is used instead of `resolution`
+    ExponentialFilter filter;  ///< transfer function
+    double tolerance = 1e-4;   ///< error allowed, density; 1e-6 to 0.05
+    int tile = 0;              ///< side of the cube that one FFT filters, voxels; 0 chooses
+    bool clamp = false;        ///< limit the density to [0, 1] (cuts off ringing)
+    double iso = 0.5;          ///< density that is the surface; stored for later stages
+};
+
+/// A density grid and what was measured while it was made.
+struct DensityResult {
+    openvdb::FloatGrid::Ptr grid;       ///< named "density", metadata set
+    DensityMetadata metadata;           ///< as stored in the grid
+    std::int64_t surfaceSamples = 0;    ///< exact route: quadrature points, once for each tile
+    std::int64_t fieldSamples = 0;      ///< sampled route: values asked for, once for each tile
+    std::int64_t tiles = 0;             ///< tiles transformed
+    int tileSide = 0;                   ///< voxels, halo included
+    int halo = 0;                       ///< voxels on each side of a tile
+    int kernelWidth = 0;                ///< exact route: of the spreading kernel, voxels
+    double minimum = 0, maximum = 0;    ///< of the density over all voxels computed
+    double spreadSeconds = 0;           ///< processor time of all threads before the transforms
+    double transformSeconds = 0;        ///< the same in transforms
+    std::vector<std::string> warnings;  ///< in words, for the user
+};
+
+}  // namespace bandvox
