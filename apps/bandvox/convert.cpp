@@ -15,6 +15,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -56,6 +57,13 @@ void readRoute(const CommandLine& line, ConvertRequest& request) {
     }
     request.field.oversample =
         line.wholeNumber("oversample", 1, kMostOversample, request.field.oversample);
+    // Sampling is by far the largest error, so what is allowed is allowed to it.
+    DensityOptions& density = request.field.density;
+    const double tolerance =
+        line.number("tolerance", {.low = 1e-6, .high = 0.05},
+                    request.isSampled ? request.field.samplingTolerance : density.tolerance);
+    if (request.isSampled) request.field.samplingTolerance = tolerance;
+    density.tolerance = request.isSampled ? std::min(density.tolerance, tolerance) : tolerance;
 }
 
 ConvertRequest parseConvert(const CommandLine& line) {
@@ -71,7 +79,6 @@ ConvertRequest parseConvert(const CommandLine& line) {
     density.filter.cutoff =
         line.number("cutoff", {.low = 0.01, .high = 0.5}, density.filter.cutoff);
     density.filter.order = line.number("order", {.low = 1, .high = 64}, density.filter.order);
-    density.tolerance = line.number("tolerance", {.low = 1e-6, .high = 0.05}, density.tolerance);
     density.tile = line.wholeNumber("tile", 0, kLargestTile, density.tile);
     if (density.tile % 2 != 0) {
         throw Error(ErrorKind::Usage, "option --tile is '" + std::to_string(density.tile) +
@@ -96,12 +103,7 @@ Solid loadSolid(CommandRun& run, const std::string& input) {
     return solid;
 }
 
-/// What was measured of the route's own error, density.
-double errorOf(const DensityMetadata& metadata) {
-    return metadata.route == "sampled" ? metadata.samplingError : metadata.closureError;
-}
-
-void sayResult(CommandRun& run, const DensityResult& result) {
+void sayResult(CommandRun& run, const ConvertRequest& request, const DensityResult& result) {
     const DensityMetadata& metadata = result.metadata;
     const auto activeVoxels = static_cast<std::int64_t>(result.grid->activeVoxelCount());
     const openvdb::Coord size = result.grid->evalActiveVoxelBoundingBox().dim();
@@ -110,16 +112,19 @@ void sayResult(CommandRun& run, const DensityResult& result) {
             formatNumber(result.grid->voxelSize().x()) + ", " +
             formatCount(activeVoxels, "active voxel", "active voxels") + ", density " +
             formatNumber(result.minimum) + " to " + formatNumber(result.maximum));
-    const bool isSampled = metadata.route == "sampled";
     run.sayMore(
         "tiles    " + std::to_string(result.tiles) + " of side " + std::to_string(result.tileSide) +
         " with a halo of " + std::to_string(result.halo) +
-        (isSampled ? ", from " + formatCount(result.fieldSamples, "sample", "samples")
-                   : ", spread over " + std::to_string(result.kernelWidth) + " voxels from " +
-                         formatCount(result.surfaceSamples, "surface sample", "surface samples")));
-    run.say("error    " + formatNumber(errorOf(metadata), 2) + " measured by " +
-            (isSampled ? "halving the samples" : "closure") + ", tolerance " +
-            formatNumber(metadata.tolerance, 2));
+        (request.isSampled
+             ? ", from " + formatCount(result.fieldSamples, "sample", "samples")
+             : ", spread over " + std::to_string(result.kernelWidth) + " voxels from " +
+                   formatCount(result.surfaceSamples, "surface sample", "surface samples")));
+    run.say("error    " + (request.isSampled ? formatNumber(metadata.samplingError, 2) +
+                                                   " measured by halving the samples, tolerance " +
+                                                   formatNumber(request.field.samplingTolerance, 2)
+                                             : formatNumber(metadata.closureError, 2) +
+                                                   " measured by closure, tolerance " +
+                                                   formatNumber(metadata.tolerance, 2)));
     const double difference =
         metadata.sourceVolume != 0
             ? std::abs(metadata.gridVolume - metadata.sourceVolume) / metadata.sourceVolume
@@ -184,7 +189,10 @@ const CommandTable& convertTable() {
                  "overshoots at flat faces.",
                  filter},
                 {"tolerance", 0, "E", formatNumber(density.tolerance),
-                 "Error of the density that is allowed, 1e-6 to 0.05.", filter},
+                 "Error of the density that is allowed, 1e-6 to 0.05. On the sampled route its "
+                 "default is " +
+                     formatNumber(FieldDensityOptions().samplingTolerance) + ".",
+                 filter},
                 {"tile", 0, "N", "chosen",
                  "Side of the cube that is filtered at a time, in voxels, even, at most 512.",
                  filter},
@@ -224,7 +232,7 @@ void runConvert(const CommandLine& line) {
 
     DensityResult result = toDensity(run, request);
     setDensityMetadata(*result.grid, result.metadata);
-    sayResult(run, result);
+    sayResult(run, request, result);
     run.warn(result.warnings, ErrorKind::Result);
 
     run.writeOutput(output,

@@ -52,6 +52,8 @@ TEST(DensityMetadata, ComesBackAsItWasSet) {
     metadata.iso = 0.45;
     metadata.tolerance = 1e-4;
     metadata.closureError = 2e-5;
+    metadata.oversampling = 4;
+    metadata.samplingError = 0.02;
     metadata.sourceVolume = 7.5;
     metadata.gridVolume = 7.4999;
     metadata.holesCapped = 5;
@@ -69,6 +71,8 @@ TEST(DensityMetadata, ComesBackAsItWasSet) {
     EXPECT_EQ(found->iso, metadata.iso);
     EXPECT_EQ(found->tolerance, metadata.tolerance);
     EXPECT_EQ(found->closureError, metadata.closureError);
+    EXPECT_EQ(found->oversampling, metadata.oversampling);
+    EXPECT_EQ(found->samplingError, metadata.samplingError);
     EXPECT_EQ(found->sourceVolume, metadata.sourceVolume);
     EXPECT_EQ(found->gridVolume, metadata.gridVolume);
     EXPECT_EQ(found->holesCapped, metadata.holesCapped);

@@ -1,21 +1,13 @@
 #include "bandlimit/density_column.h"
 
+#include "core/stopwatch.h"
+
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 namespace bandvox {
-
-namespace {
-
-double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-
-}  // namespace
 
 void ColumnStatistics::add(const ColumnStatistics& other) {
     closureError = std::max(closureError, other.closureError);
@@ -88,7 +80,7 @@ bool DensityColumn::sampleTile(const openvdb::Coord& tile,
                                const std::vector<std::uint32_t>& elements,
                                ColumnStatistics& statistics) {
     // Collect the quadrature points that matter to the tile.
-    const double start = now();
+    const Stopwatch stopwatch;
     const openvdb::Vec3d offset = mFilter.regionOffset();
     const SamplingRegion region{mLayout.voxelSize, mLayout.tileOrigin(tile).asVec3d() + offset,
                                 openvdb::Vec3d(mPlan.side)};
@@ -103,15 +95,15 @@ bool DensityColumn::sampleTile(const openvdb::Coord& tile,
     const bool hasDifferences =
         std::any_of(mSamples.begin(), mSamples.end(),
                     [](const SurfaceSample& sample) { return sample.areaVector.x() != 0; });
-    double spread = now();
+    double spreadSeconds = stopwatch.seconds();
     if (hasDifferences) {
         std::fill_n(mBuffer.get(), mBufferSize, 0.0F);
         mFilter.spread(mSamples, mBuffer.get());
-        spread = now();
+        spreadSeconds = stopwatch.seconds();
         mFilter.apply(mBuffer.get());
     }
-    statistics.spreadSeconds += spread - start;
-    statistics.transformSeconds += now() - spread;
+    statistics.spreadSeconds += spreadSeconds;
+    statistics.transformSeconds += stopwatch.seconds() - spreadSeconds;
     statistics.samples += static_cast<std::int64_t>(mSamples.size());
     ++statistics.tiles;
     sumTile(hasDifferences, statistics);

@@ -1,0 +1,55 @@
+// What the convert command makes of --tolerance and --strict on the sampled route.
+
+#include "run_command.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace bandvox::app_test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+RunResult convertCube(const TemporaryFolder& folder, const Names& more) {
+    Names arguments{"convert", "shape:cube", "-o", "a.vdb", "-r", "20", "--route", "sampled"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runBandvox(arguments, {.folder = folder.path()});
+}
+
+TEST(SampledRoute, PlainRunDoesNotWarn) {
+    const TemporaryFolder folder;
+    const RunResult result = convertCube(folder, {"--strict"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.err.find("tolerance 0.05"), std::string::npos) << result.err;
+}
+
+TEST(SampledRoute, ErrorAboveTheToleranceIsAWarning) {
+    const TemporaryFolder folder;
+    const RunResult plain = convertCube(folder, {"--oversample", "4", "--tolerance", "0.012"});
+    EXPECT_EQ(plain.status, 0) << plain.err;
+    EXPECT_EQ(countLines(plain.err, "bandvox: warning: the sampling error"), 1) << plain.err;
+    EXPECT_NE(plain.err.find("tolerance of 0.012;"), std::string::npos) << plain.err;
+    std::filesystem::remove(folder / "a.vdb");
+
+    const RunResult strict =
+        convertCube(folder, {"--oversample", "4", "--tolerance", "0.012", "--strict"});
+    EXPECT_EQ(strict.status, 4) << strict.err;
+    EXPECT_EQ(folder.contents(), Names{});
+}
+
+TEST(SampledRoute, ErrorThatIsNotKnownIsAWarning) {
+    const TemporaryFolder folder;
+    const RunResult result = convertCube(folder, {"--oversample", "3", "--stats", "s.json"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(countLines(result.err, "bandvox: warning: "), 1) << result.err;
+    const auto counts = nlohmann::json::parse(readText(folder / "s.json")).at("counts");
+    EXPECT_TRUE(counts.at("sampling_error").is_null());
+    EXPECT_GT(counts.at("field_samples").get<double>(), 60 * 60 * 60);
+    const RunResult info = runBandvox({"info", "a.vdb", "--json"}, {.folder = folder.path()});
+    const auto own = nlohmann::json::parse(info.out).at("grids").at(0).at("bandvox");
+    EXPECT_TRUE(own.at("sampling_error").is_null());
+    EXPECT_NEAR(own.at("source_volume").get<double>(), 8, 1e-9);
+}
+
+}  // namespace
+}  // namespace bandvox::app_test
