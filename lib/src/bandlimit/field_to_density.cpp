@@ -21,10 +21,11 @@ namespace {
 
 constexpr int kHighestOversample = 64;
 
-// By how much the error may exceed the difference that is measured. Halves of the samples miss a
-// flat face by exactly as much more as all of them do at worst (docs/math/sampled-route.md); where
-// faces meet, their errors may add up while the differences do not.
-constexpr double kSafety = 1.5;
+// By how much the error may exceed the difference that is measured. Half of the samples miss a
+// flat face by exactly as much more as all of them do at worst; where faces meet, or lie opposite
+// each other in a thin part, their errors may add up while the differences do not
+// (docs/math/sampled-route.md).
+constexpr double kSafety = 2;
 
 void requireValid(const FieldDensityOptions& options) {
     requireValid(options.density);
