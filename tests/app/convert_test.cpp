@@ -264,6 +264,32 @@ TEST(Convert, StrictTakesAWarningForAFailure) {
     EXPECT_EQ(folder.contents(), Names{});
 }
 
+TEST(Convert, SampledRouteStatesItsError) {
+    const TemporaryFolder folder;
+    const RunResult result = convertIn(folder, {"shape:sphere", "-o", "s.vdb", "-r", "20",
+                                                "--route", "sampled", "--oversample", "4"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.err.find("measured by halving the samples"), std::string::npos) << result.err;
+    const RunResult info = runBandvox({"info", "s.vdb", "--json"}, {.folder = folder.path()});
+    const auto own = nlohmann::json::parse(info.out)["grids"][0]["bandvox"];
+    EXPECT_EQ(own["route"], "sampled");
+    EXPECT_EQ(own["oversampling"], 4);
+    EXPECT_GT(own["sampling_error"], 0.001);
+    EXPECT_LT(own["sampling_error"], 0.2);
+
+    // What does not go together is wrong usage.
+    writeText(folder / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const std::vector<std::vector<std::string>> wrong = {
+        {"a.obj", "-o", "a.vdb", "--route", "sampled"},
+        {"shape:sphere", "-o", "a.vdb", "--oversample", "4"},
+        {"shape:sphere", "-o", "a.vdb", "--route", "sampled", "--oversample", "65"},
+        {"shape:sphere", "-o", "a.vdb", "--route", "round"}};
+    for (const auto& arguments : wrong) {
+        EXPECT_EQ(convertIn(folder, arguments).status, 2) << arguments.back();
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.vdb"));
+}
+
 TEST(Convert, OutputOpensInVdbPrint) {
     if (!hasProgram("vdb_print")) GTEST_SKIP() << "vdb_print is not installed";
     const TemporaryFolder folder;
