@@ -49,7 +49,8 @@ TEST(RowTransform, EqualsTheDirectSum) {
             EXPECT_TRUE(!isOne || rows[0] == rows[1]);
             for (int r = 0; r < 2; ++r) {
                 for (int k = 0; k < count; ++k) {
-                    const std::complex<double> truth = directSum(rows[r], k);
+                    const std::complex<double> truth =
+                        directSum(rows[r], signedFrequency(k, frequencies));
                     EXPECT_NEAR(std::abs(std::complex<double>(spectra[r][k]) - truth), 0,
                                 2e-6 * samples)
                         << samples << " samples, " << steps << " steps, frequency " << k;

@@ -46,10 +46,11 @@ RowTransform::RowTransform(int samples, int frequencies)
       mCount(frequencies / 2 + 1),
       mPrefixes(static_cast<std::size_t>(samples) * mCount) {
     for (int k = 0; k < mCount; ++k) {
+        const std::int64_t frequency = signedFrequency(k, frequencies);
         std::complex<double> sum = 0;
         for (std::int64_t j = 0; j < samples; ++j) {
             mPrefixes[static_cast<std::size_t>(j) * mCount + k] = Complex(sum);
-            const double turns = static_cast<double>(j * k % samples) / samples;
+            const double turns = static_cast<double>(j * frequency % samples) / samples;
             sum += std::polar(1.0, -2 * std::numbers::pi * turns);
         }
     }

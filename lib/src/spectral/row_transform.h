@@ -20,7 +20,8 @@ class RowTransform {
     /// Throws as LowFrequencyTransform.
     RowTransform(int samples, int frequencies);
 
-    /// Writes F(k), 0 ≤ k ≤ N/2, of two rows of R samples. Returns true if all their samples are
+    /// Writes F(k), 0 ≤ k ≤ N/2 (at Nyquist F(-N/2), as signedFrequency has it), of two rows of R
+    /// samples. Returns true if all their samples are
     /// one value.
     bool pair(const float* first, const float* second, Complex* firstSpectrum,
               Complex* secondSpectrum, std::vector<Complex>& scratch) const;
