@@ -29,4 +29,7 @@ void writeMelting(const std::filesystem::path& folder, const MeltingSize& size);
 /// How far the normals are off, and how rough the shades are, of each solid by each method.
 void writeMeasures(const std::filesystem::path& folder, const std::vector<Solid>& solids);
 
+/// The mean errors of normals by the paper's method with other filters and other samples.
+void writeVariants(const std::filesystem::path& folder);
+
 }  // namespace paper_figures

@@ -33,8 +33,9 @@ int main(int argc, char** argv) {
         paper_figures::writeMelting(
             folder, isQuick ? paper_figures::MeltingSize{128, 64} : paper_figures::MeltingSize{});
         paper_figures::writeMeasures(folder, solids);
-        std::cout << "figures 1 to 5, 8, 9 and 10, normal_errors and roughness are in " << folder
-                  << '\n';
+        paper_figures::writeVariants(folder);
+        std::cout << "figures 1 to 5, 8, 9 and 10, normal_errors, roughness and variants are in "
+                  << folder << '\n';
         return EXIT_SUCCESS;
     } catch (const bandvox::Error& error) {
         std::cerr << error.what() << '\n';

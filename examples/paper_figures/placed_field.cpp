@@ -10,11 +10,11 @@ namespace paper_figures {
 
 using openvdb::Vec3d;
 
-Placement turned(double azimuth, double tilt, double scale) {
+Placement turned(double azimuth, double tilt, double scale, const Vec3d& move) {
     constexpr double kDegree = std::numbers::pi / 180;
     return {openvdb::math::rotation<openvdb::Mat3d>(openvdb::math::X_AXIS, tilt * kDegree) *
                 openvdb::math::rotation<openvdb::Mat3d>(openvdb::math::Y_AXIS, azimuth * kDegree),
-            scale};
+            scale, move};
 }
 
 PlacedField::PlacedField(FieldPtr field, const Placement& placement)

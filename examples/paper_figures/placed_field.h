@@ -25,8 +25,9 @@ struct Placement {
     }
 };
 
-/// A placement in the middle, turned about y by `azimuth` and then about x by `tilt`, degrees.
-Placement turned(double azimuth, double tilt, double scale);
+/// A placement that is turned about y by `azimuth` and then about x by `tilt`, degrees.
+Placement turned(double azimuth, double tilt, double scale,
+                 const openvdb::Vec3d& move = openvdb::Vec3d(0.0));
 
 /// A field, placed.
 class PlacedField final : public bandvox::FieldSource {

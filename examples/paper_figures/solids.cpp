@@ -46,11 +46,11 @@ Solid solid(const std::string& name, FieldPtr field, SurfacePtr surface,
 
 }  // namespace
 
-std::vector<Solid> solids() {
+std::vector<Solid> solids(const Vec3d& move) {
     return {solid("hyperboloid", std::make_shared<HyperboloidField>(),
-                  hyperboloidSurface(kHyperboloid), turned(0, -20, 0.95)),
-            solid("sphere", shape("sphere"), sphereSurface(), turned(0, 0, 1)),
-            solid("cube", shape("cube"), cubeSurface(), turned(30, -25, 0.75))};
+                  hyperboloidSurface(kHyperboloid), turned(0, -20, 0.95, move)),
+            solid("sphere", shape("sphere"), sphereSurface(), turned(0, 0, 1, move)),
+            solid("cube", shape("cube"), cubeSurface(), turned(30, -25, 0.75, move))};
 }
 
 FieldPtr twoBalls(double gap) {

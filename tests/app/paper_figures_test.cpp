@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <sstream>
 
+// Where the examples are not built, there is nothing to test.
+#ifdef BANDVOX_PAPER_FIGURES
+
 namespace bandvox::app_test {
 namespace {
 
@@ -63,6 +66,8 @@ TEST_F(PaperFigures, LeavesSheetsPicturesAndTables) {
         EXPECT_GT(countLines(csv, "cube,spectral,"), 5) << name;
         EXPECT_EQ(countLines(markdown, "| cube | spectral |"), countLines(csv, "cube,spectral,"));
     }
+    EXPECT_GT(countLines(readText(file("variants.csv")), "\"filter ("), 8);
+
     const OIIO::ImageBuf picture(file("figure_8_sphere_front.exr").string());
     const std::vector<std::string>& channels = picture.spec().channelnames;
     for (const char* channel : {"R", "A", "Z", "N.X", "N.Z", "P.X", "P.Z"}) {
@@ -84,7 +89,7 @@ TEST_F(PaperFigures, NormalsOfASphereAreAsGoodAsThePaperSays) {
     EXPECT_GT(meanError("sphere,spectral,16,16"), 2);
 }
 
-TEST_F(PaperFigures, RefusesOtherArguments) {
+TEST(PaperFiguresUsage, RefusesOtherArguments) {
     for (const std::vector<std::string>& arguments :
          {std::vector<std::string>{}, {"out", "--fast"}, {"--quick"}}) {
         std::vector<std::string> command{BANDVOX_PAPER_FIGURES};
@@ -97,3 +102,5 @@ TEST_F(PaperFigures, RefusesOtherArguments) {
 
 }  // namespace
 }  // namespace bandvox::app_test
+
+#endif
