@@ -60,9 +60,9 @@ void requireDistinctFiles(const CommandLine& line) {
         const fs::path path = option == "output" ? outputPath(*given) : fs::path(*given);
         for (const auto& [name, other] : files) {
             if (!isSameFile(path, other)) continue;
-            throw Error(ErrorKind::Usage, "option --" + option + " is '" + *given +
-                                              "', the same file as " + name +
-                                              "; expected another one");
+            std::string message = "option --" + option;
+            message += " is '" + *given + "', the same file as " + name + "; expected another one";
+            throw Error(ErrorKind::Usage, message);
         }
         files.emplace_back("--" + option, path);
     }

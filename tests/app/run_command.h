@@ -34,6 +34,7 @@ struct RunOptions {
     std::optional<std::string> standardOutput;  ///< file to use instead of collecting the output
     bool standardOutputClosed = false;          ///< its reader has gone away
     std::optional<long> largestFile;            ///< bytes; writing more fails, as on a full disk
+    bool heedPermissions = false;               ///< those of files, even if root runs the tests
     /// Called again and again while the program runs, with what it has said on the standard error
     /// so far; a signal that it returns is sent, `signalTimes` times, shortly after each other.
     std::function<int(const std::string& said)> signalWhen;

@@ -1,114 +1,25 @@
-#include <bandvox/core/error.h>
+#include "render/ball_scene.h"
+
 #include <bandvox/core/parallel.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/render/density_to_image.h>
-#include <bandvox/spectral/exponential_filter.h>
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/ChangeBackground.h>
 
-#include <atomic>
+#include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <numbers>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
+namespace bandvox {
 namespace {
 
-using bandvox::CameraOptions;
-using bandvox::densityToImage;
-using bandvox::Error;
-using bandvox::ErrorKind;
-using bandvox::ExponentialFilter;
-using bandvox::Image;
-using bandvox::RenderOptions;
-using bandvox::RenderResult;
+using namespace render_test;
 using openvdb::Coord;
 using openvdb::Vec3d;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180;
-
-// Density, at index coordinates, on all voxels of a box where it is above the tolerance.
-openvdb::FloatGrid::Ptr makeGrid(const openvdb::CoordBBox& box, const ExponentialFilter& filter,
-                                 const std::function<double(const Vec3d&)>& density) {
-    auto grid = openvdb::FloatGrid::create(0);
-    auto accessor = grid->getAccessor();
-    for (auto it = box.begin(); it; ++it) {
-        const auto value = static_cast<float>(density((*it).asVec3d()));
-        if (value > 1e-4F) accessor.setValue(*it, value > 0.9999F ? 1.0F : value);
-    }
-    grid->tree().prune();
-    grid->setName("density");
-    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-    bandvox::DensityMetadata metadata;
-    metadata.order = filter.order;
-    metadata.cutoff = filter.cutoff;
-    metadata.tolerance = 1e-4;
-    bandvox::setDensityMetadata(*grid, metadata);
-    return grid;
-}
-
-// A ball filtered with the default filter, a Gaussian; its closed form.
-double ballDensity(double r, double radius) {
-    const double s = 1 / (kPi * ExponentialFilter().cutoff);
-    const double a = (radius - r) / s, b = (radius + r) / s;
-    if (r < 1e-9) return std::erf(a) - 2 * a / std::sqrt(kPi) * std::exp(-a * a);
-    return 0.5 * (std::erf(a) + std::erf(b)) -
-           s / (2 * r * std::sqrt(kPi)) * (std::exp(-a * a) - std::exp(-b * b));
-}
-
-// Where the filtered ball's density is iso.
-double ballSurface(double radius, double iso) {
-    double inside = 0, outside = radius + 10;
-    while (outside - inside > 1e-10) {
-        const double middle = 0.5 * (inside + outside);
-        (ballDensity(middle, radius) > iso ? inside : outside) = middle;
-    }
-    return inside;
-}
-
-constexpr double kRadius = 17.3;
-const Vec3d kCenter(20.2, 19.6, -20.7);
-
-openvdb::FloatGrid::Ptr ballGrid() {
-    const Coord middle = Coord::round(kCenter);
-    return makeGrid(openvdb::CoordBBox(middle.offsetBy(-26), middle.offsetBy(26)), {},
-                    [](const Vec3d& x) { return ballDensity((x - kCenter).length(), kRadius); });
-}
-
-RenderOptions smallPicture(int width = 120, int height = 90) {
-    RenderOptions options;
-    options.width = width;
-    options.height = height;
-    return options;
-}
-
-Vec3d normalAt(const Image& image, std::size_t pixel) {
-    return {image.normal[3 * pixel], image.normal[3 * pixel + 1], image.normal[3 * pixel + 2]};
-}
-
-Vec3d positionAt(const Image& image, std::size_t pixel) {
-    return {image.position[3 * pixel], image.position[3 * pixel + 1],
-            image.position[3 * pixel + 2]};
-}
-
-ErrorKind kindOfFailure(openvdb::FloatGrid::ConstPtr grid, const RenderOptions& options,
-                        std::string* message = nullptr) {
-    try {
-        densityToImage(std::move(grid), options);
-    } catch (const Error& error) {
-        if (message) *message = error.what();
-        return error.kind();
-    }
-    ADD_FAILURE() << "a picture came";
-    return ErrorKind::Runtime;
-}
 
 class EachProjection : public testing::TestWithParam<CameraOptions::Projection> {};
 
@@ -152,16 +63,6 @@ TEST_P(EachProjection, DrawsABallWhereItIs) {
 INSTANTIATE_TEST_SUITE_P(Projections, EachProjection,
                          testing::Values(CameraOptions::Projection::Perspective,
                                          CameraOptions::Projection::Orthographic));
-
-RenderOptions frontView(int side, double frame) {
-    RenderOptions options = smallPicture(side, side);
-    options.camera.projection = CameraOptions::Projection::Orthographic;
-    options.camera.lookat = kCenter;
-    options.camera.eye = kCenter + Vec3d(0, 0, 60);
-    options.camera.frame = frame;
-    return options;
-}
-
 TEST(DensityToImage, GivesDepthAlongTheView) {
     const RenderResult result = densityToImage(ballGrid(), frontView(90, 45));
     const double surface = ballSurface(kRadius, 0.5);
@@ -249,7 +150,7 @@ TEST(DensityToImage, IsTheSameForAnyNumberOfThreads) {
     RenderOptions options = smallPicture(100, 70);
     options.samples = 2;
     const auto draw = [&](int threads) {
-        const bandvox::ThreadLimit limit(threads);
+        const ThreadLimit limit(threads);
         return densityToImage(grid, options);
     };
     const RenderResult one = draw(1);
@@ -269,8 +170,7 @@ TEST(DensityToImage, AThinSheetAtAGrazingAngleHasNoHoles) {
     const Vec3d up = Vec3d(0.03, 1, 0.05).unit();
     const auto sheet = [&](const Vec3d& x) {
         const double r = x.dot(up);
-        return bandvox::halfSpaceDensity(filter, r - 0.5) -
-               bandvox::halfSpaceDensity(filter, r + 0.5);
+        return halfSpaceDensity(filter, r - 0.5) - halfSpaceDensity(filter, r + 0.5);
     };
     const auto grid =
         makeGrid(openvdb::CoordBBox(Coord(-28, -9, -28), Coord(28, 9, 28)), filter, sheet);
@@ -339,141 +239,16 @@ TEST(DensityToImage, DrawsVoxelsThatAreNotCubes) {
     }
     EXPECT_GT(seen, 1000u);
 }
-
-TEST(DensityToImage, RefusesWhatIsNoDensity) {
-    const RenderOptions options = smallPicture(8, 8);
-    std::string message;
-    auto levelSet = ballGrid();
-    levelSet->setGridClass(openvdb::GRID_LEVEL_SET);
-    EXPECT_EQ(kindOfFailure(levelSet, options, &message), ErrorKind::Input);
-    EXPECT_NE(message.find("bandvox convert"), std::string::npos) << message;
-    EXPECT_EQ(kindOfFailure(openvdb::FloatGrid::create(0), options), ErrorKind::Input);
-    EXPECT_EQ(kindOfFailure(nullptr, options), ErrorKind::Input);
-    auto bent = ballGrid();
-    bent->setTransform(openvdb::math::Transform::createFrustumTransform(
-        openvdb::BBoxd(Vec3d(0.0), Vec3d(40.0)), 0.5, 10));
-    EXPECT_EQ(kindOfFailure(bent, options), ErrorKind::Input);
-}
-
 TEST(DensityToImage, DrawsSharpFiltersAsWellAsCanBe) {
     // Read as if filtered sharply: the reconstruction cannot reach the finest tolerance.
     auto grid = ballGrid();
-    bandvox::DensityMetadata metadata = *bandvox::densityMetadata(*grid);
+    DensityMetadata metadata = *densityMetadata(*grid);
     metadata.order = 16;
     metadata.cutoff = 0.42;
-    bandvox::setDensityMetadata(*grid, metadata);
+    setDensityMetadata(*grid, metadata);
     const RenderResult result = densityToImage(grid, frontView(9, 10));
     EXPECT_NEAR(result.image.depth[4 * 9 + 4], 60 - ballSurface(kRadius, 0.5), 1e-2);
-
-    metadata.order = -3;
-    bandvox::setDensityMetadata(*grid, metadata);
-    EXPECT_EQ(kindOfFailure(grid, frontView(9, 10)), ErrorKind::Input);
-}
-
-TEST(DensityToImage, SaysWhenNothingIsSeen) {
-    // Active, but nowhere as dense as the surface.
-    auto thin = openvdb::FloatGrid::create(0);
-    thin->fill(openvdb::CoordBBox(Coord(0), Coord(20)), 0.2F);
-    std::string message;
-    EXPECT_EQ(kindOfFailure(thin, smallPicture(8, 8), &message), ErrorKind::Result);
-    EXPECT_NE(message.find("0.2"), std::string::npos) << message;
-    RenderOptions away = smallPicture(8, 8);
-    away.camera.eye = kCenter + Vec3d(0, 0, 60);
-    away.camera.lookat = kCenter + Vec3d(0, 0, 90);
-    EXPECT_EQ(kindOfFailure(ballGrid(), away), ErrorKind::Result);
-}
-
-TEST(DensityToImage, SaysHowFarADensityReaches) {
-    // High enough for the surface to lie between the nodes, but it does not.
-    const auto small = makeGrid(openvdb::CoordBBox(Coord(-8), Coord(8)), {},
-                                [](const Vec3d& x) { return 0.45 * std::exp(-x.lengthSqr() / 8); });
-    std::string message;
-    EXPECT_EQ(kindOfFailure(small, smallPicture(8, 8), &message), ErrorKind::Result);
-    EXPECT_NE(message.find("0.45 only"), std::string::npos) << message;
-}
-
-TEST(DensityToImage, TellsBadGridsFromBadOptions) {
-    const auto kindWithIso = [](std::optional<double> given, double stored, float background) {
-        auto grid = ballGrid();
-        openvdb::tools::changeBackground(grid->tree(), background);
-        bandvox::DensityMetadata metadata = *bandvox::densityMetadata(*grid);
-        metadata.iso = stored;
-        bandvox::setDensityMetadata(*grid, metadata);
-        RenderOptions options = smallPicture(8, 8);
-        options.iso = given;
-        return kindOfFailure(grid, options);
-    };
-    EXPECT_EQ(kindWithIso({}, std::nan(""), 0), ErrorKind::Input);
-    EXPECT_EQ(kindWithIso({}, 0.5, 0.7F), ErrorKind::Input);
-    EXPECT_EQ(kindWithIso(0.5, 0.9, 0.7F), ErrorKind::Usage);
-
-    for (const float value : {std::nanf(""), HUGE_VALF}) {
-        auto one = ballGrid();
-        one->tree().setValue(Coord::round(kCenter), value);
-        auto all = openvdb::FloatGrid::create(0);
-        all->fill(openvdb::CoordBBox(Coord(0), Coord(20)), value);
-        for (const auto& grid : {one, all, openvdb::FloatGrid::create(value)}) {
-            grid->tree().setValueOn(Coord(0));
-            std::string message;
-            EXPECT_EQ(kindOfFailure(grid, smallPicture(8, 8), &message), ErrorKind::Input);
-            EXPECT_NE(message.find("not finite"), std::string::npos) << message;
-        }
-    }
-}
-
-TEST(DensityToImage, RefusesOptionsOutOfRange) {
-    const auto grid = ballGrid();
-    std::vector<RenderOptions> bad(12, smallPicture(8, 8));
-    bad[0].width = 0;
-    bad[1].height = 65537;
-    bad[2].samples = 0;
-    bad[3].ambient = 1.5;
-    bad[4].ambient = std::nan("");
-    bad[5].light = Vec3d(0.0);
-    bad[6].color = Vec3d(-1, 0, 0);
-    bad[7].background = Vec3d(0, HUGE_VAL, 0);
-    bad[8].iso = 0;
-    bad[9].iso = std::nan("");
-    bad[10].camera.focal = 0;
-    bad[11].samples = 1 << 20;
-    for (std::size_t i = 0; i < bad.size(); ++i) {
-        EXPECT_EQ(kindOfFailure(grid, bad[i]), ErrorKind::Usage) << i;
-        // All but iso can be judged before there is a grid.
-        if (!bad[i].iso) {
-            EXPECT_THROW(requireValid(bad[i]), Error) << i;
-        }
-    }
-}
-
-class Interrupting final : public bandvox::Progress {
-  public:
-    bool interrupted() const override { return true; }
-};
-
-// Counts how often the work asks whether to stop.
-class Asked final : public bandvox::Progress {
-  public:
-    bool interrupted() const override {
-        ++times;
-        return false;
-    }
-    mutable std::atomic<int> times{0};
-};
-
-TEST(DensityToImage, AsksInEveryRowWhetherToStop) {
-    Asked progress;
-    densityToImage(ballGrid(), smallPicture(16, 90), progress);
-    EXPECT_GE(progress.times, 90);
-}
-
-TEST(DensityToImage, CanBeInterrupted) {
-    Interrupting progress;
-    try {
-        densityToImage(ballGrid(), smallPicture(), progress);
-        ADD_FAILURE() << "it went on";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::Interrupted);
-    }
 }
 
 }  // namespace
+}  // namespace bandvox

@@ -5,6 +5,8 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <memory>
 #include <thread>
 
 // TBB is not built with the thread sanitizer, so the sanitizer does not see that tasks start
@@ -46,6 +48,9 @@ int threadCount() {
 }
 
 struct ThreadLimit::Implementation {
+    explicit Implementation(std::size_t threads)
+        : control(oneapi::tbb::global_control::max_allowed_parallelism, threads) {}
+
     oneapi::tbb::global_control control;
 };
 
@@ -53,8 +58,7 @@ ThreadLimit::ThreadLimit(int threads) {
     const std::size_t limit = threads > 0
                                   ? static_cast<std::size_t>(threads)
                                   : std::max<std::size_t>(1, std::thread::hardware_concurrency());
-    mImplementation.reset(
-        new Implementation{{oneapi::tbb::global_control::max_allowed_parallelism, limit}});
+    mImplementation = std::make_unique<Implementation>(limit);
 }
 
 ThreadLimit::~ThreadLimit() = default;

@@ -145,7 +145,7 @@ std::int64_t drawTiles(const Scene& scene, const Reconstruction& reconstruction,
 
 }  // namespace
 
-RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptions& options,
+RenderResult densityToImage(const openvdb::FloatGrid::ConstPtr& grid, const RenderOptions& options,
                             Progress& progress) {
     // Refuse what cannot be drawn.
     requireValid(options);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <openvdb/Types.h>
 #include <openvdb/math/BBox.h>
 
 #include <cstdint>

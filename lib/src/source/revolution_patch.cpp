@@ -90,7 +90,7 @@ openvdb::BBoxd RevolutionPatch::bounds(const ParameterCell& cell) const {
             mCenter + openvdb::Vec3d(x.max, range.yMax, z.max)};
 }
 
-void appendRevolution(std::shared_ptr<const Profile> profile, const openvdb::Vec3d& center,
+void appendRevolution(const std::shared_ptr<const Profile>& profile, const openvdb::Vec3d& center,
                       PatchList& patches) {
     for (int quarter = 0; quarter < 4; ++quarter) {
         patches.push_back(std::make_unique<RevolutionPatch>(profile, center, 0.5 * kPi * quarter,

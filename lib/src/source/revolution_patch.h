@@ -82,7 +82,7 @@ class RevolutionPatch final : public Patch {
 };
 
 /// Appends the whole surface of revolution, as four sectors.
-void appendRevolution(std::shared_ptr<const Profile> profile, const openvdb::Vec3d& center,
+void appendRevolution(const std::shared_ptr<const Profile>& profile, const openvdb::Vec3d& center,
                       PatchList& patches);
 
 }  // namespace bandvox

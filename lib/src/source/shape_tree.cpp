@@ -110,6 +110,7 @@ void TreeShape::fitToBox() {
 
 void TreeShape::boundBranches() {
     // Children come after their parents.
+    // NOLINTNEXTLINE(modernize-loop-convert): Clang 14 cannot compile GCC's std::views::reverse.
     for (auto b = mBranches.rbegin(); b != mBranches.rend(); ++b) {
         b->bounds = openvdb::BBoxd();
         for (const auto& [r, y] : {std::pair(b->foot, b->y0), std::pair(b->top, b->y1)}) {

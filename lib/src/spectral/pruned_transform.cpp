@@ -200,7 +200,7 @@ template <typename Real>
 int SubsetTransform<Real>::chooseDivisor(std::size_t places) const {
     const int n = mPhases.frequencies();
     const auto cost = [&](int x) {
-        return n * std::log2(x) + (n / x - 1.0) * static_cast<double>(places);
+        return n * std::log2(x) + (static_cast<double>(n) / x - 1) * static_cast<double>(places);
     };
     return *std::min_element(mDivisors.begin(), mDivisors.end(),
                              [&](int a, int b) { return cost(a) < cost(b); });

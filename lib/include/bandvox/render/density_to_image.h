@@ -46,7 +46,8 @@ struct RenderResult {
 /// Throws Error(ErrorKind::Usage) for options out of range, Error(ErrorKind::Input) if the grid
 /// has no active voxel or is not a density, holds values that are not finite or a stored iso-value
 /// that is not above its background, Error(ErrorKind::Result) if nothing is seen.
-RenderResult densityToImage(openvdb::FloatGrid::ConstPtr grid, const RenderOptions& options = {},
+RenderResult densityToImage(const openvdb::FloatGrid::ConstPtr& grid,
+                            const RenderOptions& options = {},
                             Progress& progress = silentProgress());
 
 }  // namespace bandvox
