@@ -18,7 +18,7 @@ struct FieldDensityOptions {
 /// taken from the samples by Algorithm I (docs/math/sampled-route.md). Memory is that of the grid
 /// and of one tile's low frequencies for each thread, whatever the number of samples.
 ///
-/// N. Chiba, Y. Aoki, N. Saito: "A Voxel Based Geometric Modeling" (1990), section 5.1.
+/// N. Chiba, T. Aoki, N. Saito: "A Voxel Based Geometric Modeling" (1990), section 5.1.
 ///
 /// Lattice and grid are as those of surfaceToDensity. The tolerance holds for fields about as large
 /// as 1. What the samples cannot tell is measured, for an even P, by the difference from every
