@@ -34,6 +34,9 @@ class DensityReader {
   public:
     DensityReader(const openvdb::FloatGrid::Ptr& grid, const ExponentialFilter& filter);
 
+    /// Another reader of the same density, for another thread.
+    DensityReader another() const { return DensityReader(mReconstruction); }
+
     /// Density and gradient at a place, voxels.
     DensityAt at(const openvdb::Vec3d& place) const { return mProbe->evaluate(place); }
 
@@ -43,7 +46,10 @@ class DensityReader {
                                      const openvdb::Vec3d& direction, double farthest) const;
 
   private:
-    std::unique_ptr<Reconstruction> mReconstruction;
+    explicit DensityReader(std::shared_ptr<Reconstruction> reconstruction)
+        : mReconstruction(std::move(reconstruction)), mProbe(mReconstruction->probe()) {}
+
+    std::shared_ptr<Reconstruction> mReconstruction;
     std::unique_ptr<DensityProbe> mProbe;
 };
 
