@@ -43,9 +43,21 @@ Solid cube(const std::string& name, double degrees, const Vec3d& center, bool ha
             hasFacesOnSamples};
 }
 
-std::vector<Solid> makeSolids() {
+// Its radius is about 32 voxels; its poles, unlike those of the built-in shape, lie between
+// samples.
+Solid movedSphere(const BoundarySource& boundary, const FieldSource& field) {
+    const double voxelSize = 1 / 31.73;
+    const Vec3d shift = voxelSize * kPlace;
+    return {"sphere between samples", std::make_unique<ShiftedCopies>(boundary, std::vector{shift}),
+            std::make_unique<ShiftedField>(field, shift), voxelSize, false};
+}
+
+// Refers to a sphere that outlives them.
+std::vector<Solid> makeSolids(const Solid& sphere) {
     std::vector<Solid> solids;
     solids.push_back(shape("sphere", kShapeVoxels, false));
+    solids.back().name = "sphere on samples";
+    solids.push_back(movedSphere(*sphere.boundary, *sphere.field));
     solids.push_back(shape("hyperboloid", kShapeVoxels, true));
     solids.push_back(cube("cube on samples", 0, Vec3d(0.0), true));
     solids.push_back(cube("cube between samples", 0, kPlace, false));
@@ -71,7 +83,8 @@ int mostSamples(const Solid& solid, const ExponentialFilter& filter) {
 }
 
 void measureSolids(Table& table) {
-    for (const Solid& solid : makeSolids()) {
+    const Solid sphere = shape("sphere", kShapeVoxels, false);
+    for (const Solid& solid : makeSolids(sphere)) {
         const HalfOnFaces halved(*solid.field);
         for (const ExponentialFilter& filter : kFilters) {
             const DensityResult truth = exactDensity(*solid.boundary, filter, solid.voxelSize);

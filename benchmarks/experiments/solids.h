@@ -7,6 +7,7 @@
 #include <openvdb/openvdb.h>
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace bandvox::experiments {
@@ -52,6 +53,28 @@ class HalfOnFaces final : public FieldSource {
 
   private:
     const FieldSource& mField;
+};
+
+/// A field moved by `shift`, world units. Refers to a field that outlives it.
+class ShiftedField final : public FieldSource {
+  public:
+    ShiftedField(const FieldSource& field, const openvdb::Vec3d& shift)
+        : mField(field), mShift(shift) {}
+    std::string name() const override { return mField.name(); }
+    openvdb::BBoxd bounds() const override {
+        return {mField.bounds().min() + mShift, mField.bounds().max() + mShift};
+    }
+    std::optional<float> constantIn(const openvdb::BBoxd& box) const override {
+        return mField.constantIn({box.min() - mShift, box.max() - mShift});
+    }
+    void sampleRow(const openvdb::Vec3d& start, const openvdb::Vec3d& step,
+                   std::span<float> values) const override {
+        mField.sampleRow(start - mShift, step, values);
+    }
+
+  private:
+    const FieldSource& mField;
+    openvdb::Vec3d mShift;
 };
 
 /// Copies of one solid, each shifted. Refers to a source that outlives it.
