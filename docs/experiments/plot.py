@@ -41,7 +41,7 @@ def column(rows, key):
 
 def save(figure, name):
     figure.tight_layout()
-    figure.savefig(os.path.join(HERE, "plots", name + ".png"), dpi=90)
+    figure.savefig(os.path.join(HERE, "plots", name + ".png"), dpi=80)
     plt.close(figure)
 
 
@@ -302,7 +302,7 @@ def plot_volume():
     solids = (("ball", "ball: diameter, voxels"), ("cube", "cube: side, voxels"),
               ("plate", "plate 32 x 32: thickness, voxels"),
               ("rod", "rod, 32 long: thickness, voxels"))
-    figure, axes = plt.subplots(2, 4, figsize=(14, 7), sharey="row")
+    figure, axes = plt.subplots(2, 4, figsize=(12.5, 6), sharey="row")
     for i, (solid, label) in enumerate(solids):
         for order, cutoff in FILTERS:
             found = select(rows, solid=solid, order=order)
@@ -320,7 +320,7 @@ def plot_volume():
         axes[1, i].set_xlabel(label)
         for axis in axes[:, i]:
             axis.grid(alpha=0.3)
-    axes[0, 0].set_ylabel("iso-value that keeps the volume (dotted: (7))")
+    axes[0, 0].set_ylabel("iso-value that keeps the volume")
     axes[1, 0].set_ylabel("volume error at 0.5, %")
     axes[0, 2].legend(fontsize=8)
     save(figure, "volume")
