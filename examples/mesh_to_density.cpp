@@ -33,7 +33,6 @@ int main(int argc, char** argv) {
         return static_cast<int>(bandvox::ErrorKind::Usage);
     }
     try {
-        openvdb::initialize();
         const std::unique_ptr<bandvox::BoundarySource> solid = loadSolid(argv[1]);
 
         bandvox::DensityOptions options;

@@ -10,8 +10,6 @@
 #include <bandvox/core/error.h>
 #include <bandvox/core/version.h>
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <new>
@@ -73,7 +71,6 @@ void runCommand(const std::vector<std::string>& arguments) {
     if (line.has("help")) return printHelp({command.table().name});
     if (line.has("version")) return printVersion();
     line.requirePositionals();
-    openvdb::initialize();
     command.run(line);
 }
 

@@ -6,8 +6,6 @@
 
 #include <bandvox/core/error.h>
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -55,7 +53,6 @@ int main(int argc, char** argv) {
         return static_cast<int>(ErrorKind::Usage);
     }
     try {
-        openvdb::initialize();
         run({argv[1]}, {argv + 2, argv + argc});
         return EXIT_SUCCESS;
     } catch (const Error& error) {

@@ -9,7 +9,6 @@
 #include <numbers>
 
 int main() {
-    openvdb::initialize();
     const auto sphere = bandvox::makeShapeBoundary("shape:sphere");
     bandvox::DensityOptions options;
     options.resolution = 32;

@@ -7,8 +7,6 @@
 
 #include <bandvox/core/error.h>
 
-#include <openvdb/openvdb.h>
-
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
@@ -23,7 +21,6 @@ int main(int argc, char** argv) {
         return static_cast<int>(bandvox::ErrorKind::Usage);
     }
     try {
-        openvdb::initialize();
         const std::filesystem::path folder = argv[1];
         std::filesystem::create_directories(folder);
         const std::vector<paper_figures::Solid> solids = paper_figures::solids();

@@ -23,7 +23,6 @@ RunResult convertIn(const TemporaryFolder& folder, std::vector<std::string> argu
 }
 
 openvdb::FloatGrid::Ptr readDensity(const std::filesystem::path& path) {
-    openvdb::initialize();
     const openvdb::GridPtrVec grids = readVdb(path);
     EXPECT_EQ(grids.size(), 1u);
     return openvdb::gridPtrCast<openvdb::FloatGrid>(grids.at(0));

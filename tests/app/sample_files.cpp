@@ -1,5 +1,7 @@
 #include "sample_files.h"
 
+#include <bandvox/grid/density_grid.h>
+
 #include <openvdb/openvdb.h>
 
 #include <array>
@@ -129,7 +131,6 @@ std::string cubeGlb() {
 }
 
 void writeSeveralGrids(const std::filesystem::path& path) {
-    openvdb::initialize();
     openvdb::GridCPtrVec grids;
     for (const char* name : {"heat", "density"}) {
         auto grid = openvdb::FloatGrid::create(0);
@@ -146,15 +147,14 @@ void writeSeveralGrids(const std::filesystem::path& path) {
     auto mask = openvdb::BoolGrid::create(false);
     mask->setName("mask");
     grids.push_back(mask);
-    openvdb::io::File(path.string()).write(grids);
+    writeVdb(path, grids);
 }
 
 void writeOddlyNamedGrid(const std::filesystem::path& path) {
-    openvdb::initialize();
     auto grid = openvdb::FloatGrid::create(0);
     grid->setName("two\nlines\x1b[31m");
     grid->fill(openvdb::CoordBBox({0, 0, 0}, {9, 9, 9}), 1.0f);
-    openvdb::io::File(path.string()).write({grid});
+    writeVdb(path, {grid});
 }
 
 }  // namespace bandvox::app_test

@@ -22,7 +22,6 @@ class Voxelize : public testing::Test {
     }
 
     openvdb::FloatGrid::Ptr read(const std::string& name) {
-        openvdb::initialize();
         const openvdb::GridPtrVec grids = readVdb(mFolder / name);
         EXPECT_EQ(grids.size(), 1u);
         return openvdb::gridPtrCast<openvdb::FloatGrid>(grids.at(0));
