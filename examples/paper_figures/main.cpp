@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <iostream>
 #include <string>
+#include <vector>
 
 int main(int argc, char** argv) {
     const bool isQuick = argc == 3 && argv[2] == std::string("--quick");
