@@ -65,6 +65,9 @@ TEST(Interrupt, RenderLeavesNothing) {
 }
 
 TEST(Interrupt, SecondSignalEndsAtOnceAndLeavesNothing) {
+#ifdef BANDVOX_THREAD_SANITIZER
+    GTEST_SKIP() << "the thread sanitizer holds signals back while open() waits";
+#endif
     // Nobody reads the pipe: with its output written, the command waits until somebody does.
     const TemporaryFolder folder;
     ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
