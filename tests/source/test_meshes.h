@@ -1,11 +1,13 @@
 #pragma once
 
+#include <bandvox/source/close_mesh.h>
 #include <bandvox/source/mesh.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <string>
 #include <utility>
 
 // Meshes that several tests build, and slow ways to judge one.
@@ -111,6 +113,11 @@ inline bool isClosed(const Mesh& mesh) {
         }
     }
     return std::all_of(net.begin(), net.end(), [](const auto& e) { return e.second == 0; });
+}
+
+inline bool hasWarning(const CloseMeshReport& report, const std::string& text) {
+    return std::any_of(report.warnings.begin(), report.warnings.end(),
+                       [&text](const std::string& w) { return w.find(text) != std::string::npos; });
 }
 
 }  // namespace bandvox::test
