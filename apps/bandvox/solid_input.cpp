@@ -41,8 +41,7 @@ void sayRepairs(CommandRun& run, const CloseMeshReport& report) {
     };
     add(report.components, "piece", "pieces");
     add(report.pointsWelded, "point welded", "points welded");
-    add(report.degenerateTriangles, "triangle without area dropped",
-        "triangles without area dropped");
+    add(report.degenerateTriangles, "triangle without area", "triangles without area");
     add(report.trianglesFlipped, "triangle flipped", "triangles flipped");
     add(report.componentsTurned, "piece turned outward", "pieces turned outward");
     add(report.nonManifoldEdges, "edge of more than two triangles",

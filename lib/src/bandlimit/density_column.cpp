@@ -55,7 +55,7 @@ ColumnBlocks DensityColumn::fill(int y, int z, std::span<const std::uint32_t> el
     }
     // Behind the object the density is 0 again.
     snapAll(statistics);
-    statistics.closureError = std::max(statistics.closureError, std::abs(mSum[0]));
+    statistics.addClosureError(std::abs(mSum[0]));
     store.finishBefore(high.x() + DensityLeaf::DIM);
     ColumnBlocks blocks = store.take();
     blocks.farValues = std::move(farValues);
@@ -145,12 +145,12 @@ void DensityColumn::snapCell(int y, int z, ColumnStatistics& statistics) {
     for (int i = y * kCell; i < yEnd; ++i) {
         double* sum = mSum.data() + static_cast<std::size_t>(i) * interior;
         for (int j = z * kCell; j < zEnd; ++j) {
-            statistics.closureError = std::max(statistics.closureError, std::abs(sum[j] - whole));
+            statistics.addClosureError(std::abs(sum[j] - whole));
             sum[j] = whole;
         }
     }
-    statistics.highestWinding = std::max(statistics.highestWinding, static_cast<int>(whole));
-    statistics.lowestWinding = std::min(statistics.lowestWinding, static_cast<int>(whole));
+    statistics.highestWinding = std::max(statistics.highestWinding, whole);
+    statistics.lowestWinding = std::min(statistics.lowestWinding, whole);
 }
 
 // The same for a whole tile, which then has one value.
@@ -160,8 +160,7 @@ void DensityColumn::snapAll(ColumnStatistics& statistics) {
         for (int z = 0; z < mNear.count(); ++z) snapCell(y, z, statistics);
     }
     for (double& sum : mSum) {
-        statistics.closureError =
-            std::max(statistics.closureError, std::abs(sum - std::round(whole)));
+        statistics.addClosureError(std::abs(sum - std::round(whole)));
         sum = std::round(whole);
     }
 }

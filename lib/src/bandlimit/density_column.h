@@ -8,6 +8,7 @@
 #include <bandvox/core/progress.h>
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace bandvox {
@@ -17,14 +18,19 @@ struct ColumnStatistics {
     double closureError = 0;  ///< largest distance from a whole number where there should be one
     double minimum = 0;       ///< of the density
     double maximum = 0;
-    int highestWinding = 0;  ///< whole numbers found away from the surface
-    int lowestWinding = 0;
+    double highestWinding = 0;  ///< whole numbers found away from the surface
+    double lowestWinding = 0;
     std::int64_t tiles = 0;
     std::int64_t samples = 0;
     double spreadSeconds = 0;
     double transformSeconds = 0;
 
     void add(const ColumnStatistics& other);
+    /// Takes note of a distance from a whole number; NaN counts as infinitely far.
+    void addClosureError(double error) {
+        if (error <= closureError) return;
+        closureError = error > closureError ? error : std::numeric_limits<double>::infinity();
+    }
 };
 
 /// Fills the tiles that differ only in x, from low x to high, with the running sum of the

@@ -12,7 +12,7 @@ namespace bandvox {
 namespace {
 
 // With more boxes than this, the finer ones are guessed from them.
-constexpr std::size_t kMostBoxes = 1 << 20;
+constexpr std::size_t kMostBoxes = 1 << 18;
 
 struct Box {
     std::int64_t x, y, z;  // first voxel
@@ -38,6 +38,7 @@ double estimateVaryingBlocks(const FieldSource& source, const TileGeometry& geom
     const openvdb::Coord size = layout.tileOrigin(layout.count) - layout.origin;
     std::int64_t side = DensityLeaf::DIM;
     while (side < std::max({size.x(), size.y(), size.z()})) side *= 2;
+    double growth = 8;  // of the number of boxes in one step
     std::vector<Box> boxes{{layout.origin.x(), layout.origin.y(), layout.origin.z()}};
     while (side > DensityLeaf::DIM && boxes.size() < kMostBoxes) {
         side /= 2;
@@ -51,11 +52,13 @@ double estimateVaryingBlocks(const FieldSource& source, const TileGeometry& geom
                 }
             }
         }
+        growth = static_cast<double>(finer.size()) / static_cast<double>(boxes.size());
         boxes = std::move(finer);
     }
-    // Where a field varies along a surface, half the side makes four times as many boxes.
-    const double refinement = static_cast<double>(side) / DensityLeaf::DIM;
-    return static_cast<double>(boxes.size()) * refinement * refinement;
+    // Half the side makes four times as many boxes along a surface, eight times where the field
+    // varies everywhere: go on as the last step did.
+    const double halvings = std::log2(static_cast<double>(side) / DensityLeaf::DIM);
+    return static_cast<double>(boxes.size()) * std::pow(growth, halvings);
 }
 
 }  // namespace bandvox

@@ -1,10 +1,9 @@
-#include "bandlimit/density_column.h"
 #include "bandlimit/density_steps.h"
-#include "bandlimit/element_bins.h"
+#include "bandlimit/fill_columns.h"
+#include "bandlimit/find_overlap.h"
 #include "bandlimit/tile_filter.h"
 #include "bandlimit/tile_plan.h"
 #include "core/words.h"
-#include "core/worker_pool.h"
 
 #include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/core/error.h>
@@ -13,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 
 namespace bandvox {
@@ -32,53 +32,27 @@ double estimateGridMemory(const BoundarySource& source, double voxelSize, const 
 // Bytes that the work on it takes besides.
 double estimateWorkMemory(const BoundarySource& source, const TilePlan& plan,
                           const TileLayout& layout, const TileFilter& filter) {
+    // A tile of an ordinary shape holds about three times its own cross-section of the surface,
+    // and of the elements that much, each with a sample at least.
+    const auto elements = static_cast<double>(source.elementCount());
+    const double crossSection = static_cast<double>(plan.side) * plan.side;
+    const double area = source.area() / (layout.voxelSize * layout.voxelSize);
+    const double inTile = elements * std::min(1.0, 3 * crossSection / area);
+    constexpr double kGrowth = 2;  // of a vector that is filled without knowing its end
     const double perThread = 4.0 * static_cast<double>(filter.bufferSize()) +
                              4.0 * std::pow(plan.interior, 3) +
-                             sizeof(SurfaceSample) * 8.0 * plan.side * plan.side;
-    return memoryOfColumns(layout) + 12.0 * static_cast<double>(source.elementCount()) +
-           threadCount() * perThread;
+                             kGrowth * sizeof(SurfaceSample) * std::max(8 * crossSection, inTile);
+    // So many tiles along an axis meet an element of no size.
+    const double tilesOfElement = 1 + 2.0 * (plan.halo + 1) / plan.interior;
+    const double bins = sizeof(std::uint32_t) * elements * tilesOfElement * (tilesOfElement + 1);
+    return memoryOfColumns(layout) + bins + threadCount() * perThread;
 }
 
-// Fills all columns of tiles, in parallel.
-std::vector<ColumnBlocks> fillColumns(const BoundarySource& source, const TilePlan& plan,
-                                      const TileLayout& layout, const TileFilter& filter,
-                                      ColumnStatistics& statistics, Progress& progress) {
-    const ElementBins bins(source, layout, plan.halo);
-    const std::int64_t count = static_cast<std::int64_t>(layout.count.y()) * layout.count.z();
-    std::vector<ColumnBlocks> columns(count);
-    std::vector<ColumnStatistics> perColumn(count);
-    WorkerPool<DensityColumn> pool(
-        [&] { return std::make_unique<DensityColumn>(source, plan, layout, filter); });
-    const ProgressStage stage(progress, "band-limiting", count);
-    parallelFor(count, [&](std::int64_t i) {
-        progress.throwIfInterrupted();
-        const int y = static_cast<int>(i / layout.count.z());
-        const int z = static_cast<int>(i % layout.count.z());
-        const std::span<const std::uint32_t> elements = bins.column(y, z);
-        if (!elements.empty()) {
-            std::unique_ptr<DensityColumn> worker = pool.take();
-            columns[i] = worker->fill(y, z, elements, perColumn[i], progress);
-            pool.giveBack(std::move(worker));
-        }
-        progress.advance();
-    });
-    for (const ColumnStatistics& column : perColumn) statistics.add(column);
-    return columns;
-}
-
-// Shells that overlap add up. Returns true if that happened, and says so.
-bool findOverlap(const ColumnStatistics& statistics, const ExponentialFilter& filter,
-                 double tolerance, std::vector<std::string>& warnings) {
-    // A filter that never rings goes beyond 1 only where shells overlap, in however thin a part.
-    const double exact = 10 * (tolerance + filter.atNyquist());
-    const bool isAboveOne = filter.order <= 2 && statistics.maximum > 1 + exact;
-    if (statistics.highestWinding <= 1 && statistics.lowestWinding >= 0 && !isAboveOne) {
-        return false;
-    }
-    warnings.push_back("parts of the surface overlap or are inside out (density from " +
-                       inShort(statistics.minimum) + " to " + inShort(statistics.maximum) +
-                       "); it was limited to [0, 1], and its integral is not the volume");
-    return true;
+// What the user should know of shells that overlap.
+std::string overlapWarning(const ColumnStatistics& statistics) {
+    return "parts of the surface overlap or are inside out (density from " +
+           inShort(statistics.minimum) + " to " + inShort(statistics.maximum) +
+           "); it was limited to [0, 1], and its integral is not the volume";
 }
 
 // What lies below the storage threshold is lost, and of an object of few voxels that is much.
@@ -109,9 +83,8 @@ DensityResult surfaceToDensity(const BoundarySource& source, const DensityOption
     // Filter the tiles, and check what was measured on the way.
     DensityResult result;
     warnOfFilter(options.filter, options.tolerance, result.warnings);
-    ColumnStatistics statistics;
-    std::vector<ColumnBlocks> columns =
-        fillColumns(source, plan, layout, filter, statistics, progress);
+    FilledColumns columns = fillColumns(source, plan, layout, filter, "band-limiting", progress);
+    const ColumnStatistics statistics = columns.total();
     // What the lattice cannot hold keeps ringing away from the surface; it was warned of.
     const double unheld = std::max(0.0, options.filter.atNyquist() - options.tolerance);
     if (statistics.closureError > options.tolerance + unheld) {
@@ -120,8 +93,8 @@ DensityResult surfaceToDensity(const BoundarySource& source, const DensityOption
                         " where it should be a whole number, more than the tolerance of " +
                         inShort(options.tolerance));
     }
-    const bool isOverlapping =
-        findOverlap(statistics, options.filter, options.tolerance, result.warnings);
+    const bool isOverlapping = findOverlap(source, options, layout, columns.statistics, progress);
+    if (isOverlapping) result.warnings.push_back(overlapWarning(statistics));
     const bool clamp = isOverlapping || options.clamp;
 
     // Join the columns to one grid.
@@ -131,7 +104,7 @@ DensityResult surfaceToDensity(const BoundarySource& source, const DensityOption
     metadata.closureError = statistics.closureError;
     metadata.sourceVolume = source.volume();
     metadata.clamped = clamp;
-    finishGrid(columns, layout, options, plan, result, progress);
+    finishGrid(columns.blocks, layout, options, plan, result, progress);
     if (!clamp) warnOfVolume(metadata, result.warnings);
 
     result.surfaceSamples = statistics.samples;

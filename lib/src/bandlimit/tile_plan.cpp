@@ -7,17 +7,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 namespace bandvox {
 
 namespace {
 
-// Shares of the tolerance. What is left covers rounding, and that the errors add up.
+// Shares of the tolerance, for errors that may all add up; the twentieth that is left covers
+// rounding.
 constexpr double kHaloShare = 1.0 / 4;
 constexpr double kKernelShare = 1.0 / 8;
-constexpr double kQuadratureShare = 1.0 / 4;
-constexpr double kStorageShare = 1.0 / 2;
+constexpr double kQuadratureShare = 1.0 / 5;
+constexpr double kStorageShare = 3.0 / 8;
 
 // 64³ samples stay in a core's second-level cache, and 64 is the size that transforms fastest
 // per sample. Where the halo leaves too little of it, the next power of two is better.
@@ -89,8 +91,9 @@ TileLayout layOutTiles(const openvdb::BBoxd& bounds, double voxelSize,
         // The density reaches as far as the filter does; one voxel more makes the first
         // difference start from 0.
         origin[axis] = static_cast<int>(std::floor(low[axis])) - geometry.halo - 1;
-        const int end = static_cast<int>(std::ceil(high[axis])) + geometry.halo + 2;
-        count[axis] = (end - origin[axis] + geometry.interior - 1) / geometry.interior;
+        const auto end = static_cast<std::int64_t>(std::ceil(high[axis])) + geometry.halo + 2;
+        count[axis] =
+            static_cast<int>((end - origin[axis] + geometry.interior - 1) / geometry.interior);
     }
     return TileLayout{voxelSize, origin, count, geometry.interior};
 }

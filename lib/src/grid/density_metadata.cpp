@@ -22,6 +22,7 @@ void visitMembers(Metadata& metadata, const Visitor& visit) {
     visit("tolerance", metadata.tolerance);
     visit("closure_error", metadata.closureError);
     visit("sampling_error", metadata.samplingError);
+    visit("storage_error", metadata.storageError);
     visit("source_volume", metadata.sourceVolume);
     visit("grid_volume", metadata.gridVolume);
     visit("holes_capped", metadata.holesCapped);

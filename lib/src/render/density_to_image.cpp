@@ -90,6 +90,15 @@ class Scene {
     Lighting mLighting;
 };
 
+// What the density of a grid of this library may be off by.
+double densityError(const DensityMetadata& metadata) {
+    constexpr double kOfSampling = 0.05;  // where it was not measured
+    const double ofSampling =
+        std::isnan(metadata.samplingError) ? kOfSampling : metadata.samplingError;
+    return std::max(ClearDistance::kDensityError,
+                    metadata.tolerance + ofSampling + metadata.storageError);
+}
+
 // How far lines of sight may step. Solids under the default filter have a sharp bound; others,
 // and what was not made by this library, are taken to be about as steep as a flat face.
 ClearDistance clearDistance(const openvdb::FloatGrid& grid,
@@ -97,11 +106,14 @@ ClearDistance clearDistance(const openvdb::FloatGrid& grid,
                             double iso, double faceSlope) {
     constexpr double kRounding = 1e-2;
     const double background = grid.background();
-    if (metadata && metadata->order == 2 && background == 0 && maximum < 1 + kRounding && iso < 1) {
-        return ClearDistance::ofGaussian(iso, metadata->cutoff);
+    const double error = metadata ? densityError(*metadata) : ClearDistance::kDensityError;
+    // Overlapping shells that were limited to 1 are no solid's density.
+    if (metadata && metadata->order == 2 && !metadata->clamped && background == 0 &&
+        maximum < 1 + kRounding && iso < 1) {
+        return ClearDistance::ofGaussian(iso, metadata->cutoff, error);
     }
     const double range = std::max(1.0, maximum - background);
-    return ClearDistance::ofSlope(iso, background, kSteepestMargin * faceSlope * range);
+    return ClearDistance::ofSlope(iso, background, kSteepestMargin * faceSlope * range, error);
 }
 
 // Memory for the reconstruction's bricks: what most pictures need, if the machine has it.

@@ -15,10 +15,6 @@ constexpr double kRootError = 1e-5;
 // A root takes about ten; more than this only if the density is no smooth function.
 constexpr int kMostRootSteps = 200;
 
-// What a density may be off by: the tolerance of the lattice, cut off where it is not active, and
-// that of the reconstruction.
-constexpr double kDensityError = 1e-3;
-
 // A place on the ray and how far the density there is above iso.
 struct Sample {
     double t;
@@ -137,18 +133,21 @@ class March {
 
 }  // namespace
 
-ClearDistance::ClearDistance(double depth, const std::function<double(double)>& distance)
+ClearDistance::ClearDistance(double depth, double densityError,
+                             const std::function<double(double)>& distance)
     : mScale(kSteps / depth) {
     for (int i = 0; i <= kSteps; ++i) {
-        mVoxels[i] = static_cast<float>(distance(i / mScale - kDensityError));
+        mVoxels[i] = static_cast<float>(distance(i / mScale - densityError));
     }
 }
 
-ClearDistance ClearDistance::ofSlope(double iso, double background, double steepest) {
-    return ClearDistance(iso - background, [&](double below) { return below / steepest; });
+ClearDistance ClearDistance::ofSlope(double iso, double background, double steepest,
+                                     double densityError) {
+    return ClearDistance(iso - background, densityError,
+                         [&](double below) { return below / steepest; });
 }
 
-ClearDistance ClearDistance::ofGaussian(double iso, double cutoff) {
+ClearDistance ClearDistance::ofGaussian(double iso, double cutoff, double densityError) {
     // Invert s(r) = erfc(π k_c r) / 2, the density outside a half-space, by bisection.
     const auto distanceFromFace = [&](double density) {
         double low = -20 / cutoff, high = 20 / cutoff;
@@ -160,7 +159,7 @@ ClearDistance ClearDistance::ofGaussian(double iso, double cutoff) {
         return low;
     };
     const double surface = distanceFromFace(iso);
-    return ClearDistance(iso,
+    return ClearDistance(iso, densityError,
                          [&](double below) { return distanceFromFace(iso - below) - surface; });
 }
 

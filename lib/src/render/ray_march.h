@@ -23,14 +23,19 @@ struct RayHit {
 /// sets the steps of a march.
 class ClearDistance {
   public:
+    /// What a density may be off by if nothing is said: the tolerance of a lattice, cut off where
+    /// it is not active, and that of the reconstruction.
+    static constexpr double kDensityError = 1e-3;
+
     /// For densities that change by `steepest` per voxel at most.
-    static ClearDistance ofSlope(double iso, double background, double steepest);
+    static ClearDistance ofSlope(double iso, double background, double steepest,
+                                 double densityError = kDensityError);
 
     /// For solids under a Gaussian filter: no solid comes nearer than a half-space of the same
     /// density does, because Φ⁻¹(f~) changes by 1/σ per voxel at most, Φ being the normal
     /// distribution. D. Bakry, M. Ledoux: "Lévy-Gromov's isoperimetric inequality for an infinite
     /// dimensional diffusion generator" (1996).
-    static ClearDistance ofGaussian(double iso, double cutoff);
+    static ClearDistance ofGaussian(double iso, double cutoff, double densityError = kDensityError);
 
     /// `above` is the density minus iso, not positive.
     double operator()(double above) const {
@@ -39,7 +44,7 @@ class ClearDistance {
     }
 
   private:
-    ClearDistance(double depth, const std::function<double(double)>& distance);
+    ClearDistance(double depth, double densityError, const std::function<double(double)>& distance);
 
     static constexpr int kSteps = 256;
     double mScale;                            // steps per density

@@ -13,13 +13,14 @@ namespace bandvox {
 
 /// How a solid is band-limited.
 struct DensityOptions {
-    int resolution = 256;      ///< voxels along the longest side of the source's box; ≥ 1
+    int resolution = 256;      ///< voxels along the longest side of the source's box; 1 to 2^20
     double voxelSize = 0;      ///< world units; if > 0 it is used instead of `resolution`
-    ExponentialFilter filter;  ///< transfer function
+    ExponentialFilter filter;  ///< transfer function; order 1 to 64, cutoff 0.01 to 0.5
     double tolerance = 1e-4;   ///< error allowed, density; 1e-6 to 0.05
-    int tile = 0;              ///< side of the cube that one FFT filters, voxels; 0 chooses
+    int tile = 0;              ///< side of the cube that one FFT filters, voxels, even, up to 512;
+                               ///< 0 chooses
     bool clamp = false;        ///< limit the density to [0, 1] (cuts off ringing)
-    double iso = 0.5;          ///< density that is the surface; stored for later stages
+    double iso = 0.5;          ///< density that is the surface, in (0, 1); stored for later stages
 };
 
 /// A density grid and what was measured while it was made.

@@ -27,6 +27,7 @@ struct DensityMetadata {
     double closureError = 0;      ///< measured by the exact route while writing, density
     double samplingError = 0;     ///< measured by the sampled route while writing, density; NaN if
                                   ///< it is not known, 0 for the exact route
+    double storageError = 0;      ///< largest change by rounding to 16 bits, density; 0 without
     double sourceVolume = 0;      ///< enclosed by the source, world units³; 0 if it is not known,
                                   ///< as it is not for a field
     double gridVolume = 0;        ///< integral of the density, world units³
@@ -48,6 +49,10 @@ void setVoxelMetadata(openvdb::GridBase& grid, const std::string& source);
 /// Integral of the density: the sum of all active values times a voxel's volume, world units³.
 /// Summed in one order, so the same for any number of threads.
 double densityIntegral(const openvdb::FloatGrid& grid);
+
+/// Rounds every value to what 16 bits hold, which is what a file of such values gives back.
+/// Returns the largest change, density: up to 2^-12 below 1, 2^-11 above.
+double roundToHalf(openvdb::FloatGrid& grid);
 
 /// How a VDB file is written.
 struct VdbWriteOptions {

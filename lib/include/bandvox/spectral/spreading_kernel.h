@@ -66,8 +66,8 @@ class SpreadingKernel {
 
 /// The largest error of the filtered density of a half-space when its boundary reaches the
 /// lattice through `kernel`:
-///     2 ∫_0^{1/2} H(k) Σ_{m≠0} |ψ̂(k + m)| / ψ̂(k) / (2πk) dk.
-/// docs/math/exact-route.md derives it.
+///     2 ∫_{1/1024}^{1/2} H(k) Σ_{m≠0} |ψ̂(k + m)| / ψ̂(k) / (2πk) dk.
+/// docs/math/exact-route.md derives it, and says why the integral begins where it does.
 double aliasError(const ExponentialFilter& filter, const SpreadingKernel& kernel);
 
 }  // namespace bandvox
