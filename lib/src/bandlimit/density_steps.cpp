@@ -39,8 +39,8 @@ void requireValid(const DensityOptions& options) {
                                           " and " + inShort(kHighestTolerance));
     }
     if (!(options.iso > 0 && options.iso < 1)) {
-        throw Error(ErrorKind::Usage, "the iso-value is " + inShort(options.iso) +
-                                          "; it must lie between 0 and 1");
+        throw Error(ErrorKind::Usage,
+                    "the iso-value is " + inShort(options.iso) + "; it must lie between 0 and 1");
     }
     if (options.tile < 0 || options.tile > kLargestTile || options.tile % 2 != 0) {
         throw Error(ErrorKind::Usage, "the tile is " + std::to_string(options.tile) +

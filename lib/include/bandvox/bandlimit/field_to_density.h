@@ -27,8 +27,8 @@ struct FieldDensityOptions {
 /// than two voxels. For an odd P the error is not known, which is a warning, too.
 /// The volume of the source is not known.
 /// Throws Error(ErrorKind::Usage) for options out of range, Error(ErrorKind::Input) if a voxel
-/// would be smaller than OpenVDB takes, Error(ErrorKind::Memory) before allocating if it would not fit, Error(ErrorKind::Result) if the grid would be empty,
-/// Error(ErrorKind::Interrupted).
+/// would be smaller than OpenVDB takes, Error(ErrorKind::Memory) before allocating if it would not
+/// fit, Error(ErrorKind::Result) if the grid would be empty, Error(ErrorKind::Interrupted).
 DensityResult fieldToDensity(const FieldSource& source, const FieldDensityOptions& options = {},
                              Progress& progress = silentProgress());
 
