@@ -127,11 +127,16 @@ void CommandRun::writeOutput(AtomicFile& output, const std::function<void(Atomic
         count("output_bytes", bytes);
         size = ", " + formatBytes(bytes);
     }
-    // Both files are whole before either of them gets its name.
-    if (mStatistics) writeStatistics();
+    // Both files are whole and on the disk before either of them gets its name, and the output
+    // gets it last: there is none without the statistics that were asked for.
+    output.complete();
+    if (mStatistics) {
+        writeStatistics();
+        mStatistics->complete();
+    }
     mProgress.throwIfInterrupted();
-    output.commit();
     if (mStatistics) mStatistics->commit();
+    output.commit();
     say("wrote    " + output.target().string() + size + ", after " + formatNumber(seconds(), 3) +
         " s");
 }

@@ -15,7 +15,7 @@
 namespace bandvox::app {
 namespace {
 
-void requireVdb(const std::string& input) {
+void requireVdbToDescribe(const std::string& input) {
     if (!isShape(input) && extensionOf(input) == ".vdb") return;
     throw Error(
         ErrorKind::Input,
@@ -43,7 +43,7 @@ const CommandTable& infoTable() {
 
 void runInfo(const CommandLine& line) {
     const std::string& input = line.positional(0);
-    requireVdb(input);
+    requireVdbToDescribe(input);
     CommandRun run(line);
 
     openvdb::GridPtrVec grids;

@@ -73,7 +73,7 @@ RenderRequest parseRender(const CommandLine& line) {
     return request;
 }
 
-void requireVdb(const std::string& input) {
+void requireVdbToDraw(const std::string& input) {
     if (!isShape(input) && extensionOf(input) == ".vdb") return;
     std::string message = "cannot render '" + input + "': expected a .vdb file";
     if (isShape(input) || isMeshFile(input)) {
@@ -185,7 +185,7 @@ const CommandTable& renderTable() {
 
 void runRender(const CommandLine& line) {
     const RenderRequest request = parseRender(line);
-    requireVdb(request.input);
+    requireVdbToDraw(request.input);
     CommandRun run(line);
     AtomicFile output(request.output);
 

@@ -15,7 +15,6 @@ using bandvox::Shading;
 
 namespace {
 
-constexpr int kScreen = 64;  // M of figures 1 to 9
 constexpr bandvox::ExponentialFilter kNeverRings{2, 0.16};
 
 // A number without the zeros at its end.

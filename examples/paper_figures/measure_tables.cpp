@@ -16,10 +16,6 @@ using bandvox::Shading;
 
 namespace {
 
-constexpr int kScreen = 64;     // M, and the older methods' voxels
-constexpr int kEdgePixels = 4;  // how far from edges and outlines
-constexpr double kEdgeDistance = kEdgePixels * kDomainSide / kScreen;  // world
-
 // A row of the tables: how pictures are made.
 struct Method {
     std::string name;

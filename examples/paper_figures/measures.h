@@ -6,6 +6,10 @@
 
 namespace paper_figures {
 
+/// Within so many pixels, or world units, of an edge or an outline is not counted as off edges.
+inline constexpr int kEdgePixels = 4;
+inline constexpr double kEdgeDistance = kEdgePixels * kDomainSide / kScreen;
+
 /// Angles between the normals of a picture and the true ones, degrees.
 struct NormalErrors {
     std::size_t pixels = 0;  ///< measured

@@ -19,6 +19,9 @@ namespace paper_figures {
 /// screen looks at through the middles of its pixels: one set of places for all methods.
 inline constexpr double kDomainSide = 2.8;
 
+/// M, the pixels along each side of the figures' screens.
+inline constexpr int kScreen = 64;
+
 /// A light far away.
 struct Light {
     std::string name;  ///< for files

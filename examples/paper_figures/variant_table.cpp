@@ -12,9 +12,6 @@ namespace paper_figures {
 
 namespace {
 
-constexpr int kScreen = 64;                                  // M
-constexpr double kEdgeDistance = 4 * kDomainSide / kScreen;  // world: four pixels
-
 // What is done otherwise than in the figures.
 struct Variant {
     std::string name;

@@ -189,6 +189,23 @@ TEST_F(BadInput, StatisticsThatCannotBeWritten) {
     EXPECT_EQ(result.err.find(".bandvox-"), std::string::npos) << result.err;
 }
 
+TEST_F(BadInput, StatisticsWhoseNameIsTakenMeanwhile) {
+    // A folder takes the statistics' name once the work has begun, so that they cannot get it.
+    RunOptions options{.folder = mFolder.path()};
+    options.signalWhen = [this](const std::string& said) {
+        if (said.find('\r') != std::string::npos) {
+            std::filesystem::create_directory(mFolder / "s.json");
+        }
+        return 0;
+    };
+    const RunResult result = runBandvox({"convert", "shape:tree", "-o", "out.vdb", "-r", "200",
+                                         "--progress", "always", "--stats", "s.json"},
+                                        options);
+    EXPECT_EQ(result.status, 1);
+    EXPECT_NE(result.err.find("cannot write s.json"), std::string::npos) << result.err;
+    EXPECT_EQ(mFolder.contents(), Names{"s.json"});
+}
+
 TEST_F(BadInput, ReadOnlyFolder) {
     const auto folder = mFolder / "locked";
     std::filesystem::create_directory(folder);

@@ -119,6 +119,46 @@ TEST_F(AtomicFileTest, KeepsTheModeOfWhatItReplaces) {
     }
 }
 
+TEST_F(AtomicFileTest, PassesNoSetUserIdOn) {
+    write(folder / "a.vdb", "old");
+    fs::permissions(folder / "a.vdb", fs::perms(07755));
+    AtomicFile file(folder / "a.vdb");
+    fill(file, "new");
+    file.commit();
+    EXPECT_EQ(fs::status(folder / "a.vdb").permissions(), fs::perms(0755));
+}
+
+TEST_F(AtomicFileTest, CompletedFileHasNotItsNameYet) {
+    write(folder / "a.vdb", "old");
+    AtomicFile file(folder / "a.vdb");
+    fill(file, "new");
+    file.complete();
+    file.complete();
+    EXPECT_EQ(read(folder / "a.vdb"), "old");
+    EXPECT_EQ(read(file.temporary()), "new");
+    file.commit();
+    EXPECT_EQ(read(folder / "a.vdb"), "new");
+    EXPECT_EQ(countFiles(), 1);
+}
+
+TEST_F(AtomicFileTest, FailsIfTheTargetHasBecomeAFolder) {
+    {
+        AtomicFile file(folder / "a.vdb");
+        fill(file, "new");
+        fs::create_directory(folder / "a.vdb");
+        EXPECT_THROW(file.commit(), Error);
+    }
+    EXPECT_EQ(countFiles(), 1);
+}
+
+TEST_F(AtomicFileTest, FailsIfWhatWasWrittenIsGone) {
+    AtomicFile file(folder / "a.vdb");
+    fill(file, "new");
+    fs::remove(file.temporary());
+    EXPECT_THROW(file.complete(), Error);
+    EXPECT_EQ(countFiles(), 0);
+}
+
 TEST_F(AtomicFileTest, WritesDevicesAndPipesInPlace) {
     fs::create_symlink("/dev/null", folder / "null.vdb");
     AtomicFile null(folder / "null.vdb");

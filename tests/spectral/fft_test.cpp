@@ -1,5 +1,9 @@
 #include "spectral/fft.h"
 
+#include "spectral/complex_fft.h"
+
+#include <bandvox/core/error.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -101,6 +105,18 @@ TEST(RealFft3, InverseOfTheInnerPartIsThatPart) {
 TEST(RealFft3, PlansOfOneShapeAreShared) {
     EXPECT_EQ(&RealFft3::get(24), &RealFft3::get(24));
     EXPECT_NE(&RealFft3::get(24), &RealFft3::get(24, 1));
+}
+
+TEST(RealFft3, WithoutAPlanThereIsAnError) {
+    // A size that FFTW plans nothing for. The second call must not find what the first has left.
+    for (int i = 0; i < 2; ++i) EXPECT_THROW(RealFft3::get(0), Error);
+}
+
+TEST(ComplexFft, WithoutAPlanThereIsAnError) {
+    for (int i = 0; i < 2; ++i) {
+        EXPECT_THROW(ComplexFft<double>::get(0, 1, FftDirection::Forward, {}, {}), Error);
+        EXPECT_THROW(ComplexFft<float>::get(0, 1, FftDirection::Forward, {}, {}), Error);
+    }
 }
 
 }  // namespace

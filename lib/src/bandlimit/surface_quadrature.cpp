@@ -10,7 +10,7 @@ namespace bandvox {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // The error of a rule on exp(2πi κ·y) over an element of side 1 is tabulated for κ = k·side up to
 // kLargestSide at Nyquist.
@@ -73,7 +73,7 @@ std::vector<PlanePoint> referenceOnTriangle() {
 std::complex<double> waveIntegral(const std::vector<PlanePoint>& points, double kx, double ky) {
     std::complex<double> sum = 0;
     for (const PlanePoint& p : points) {
-        sum += p.weight * std::polar(1.0, 2 * kPi * (kx * p.x + ky * p.y));
+        sum += p.weight * std::polar(1.0, 2 * pi * (kx * p.x + ky * p.y));
     }
     return sum;
 }
@@ -113,7 +113,7 @@ double deviation(const ExponentialFilter& filter, const WaveErrors& errors, doub
         const double passed = error * filter(k);
         sum += passed * passed * k * kStep;
     }
-    return std::sqrt(2 * kPi * shape * side * side * sum);
+    return std::sqrt(2 * pi * shape * side * side * sum);
 }
 
 double largestSide(const ExponentialFilter& filter, const WaveErrors& errors, double shape,
@@ -135,7 +135,7 @@ RuleErrors computeRuleErrors() {
     RuleErrors errors{};
     const std::vector<PlanePoint> reference = referenceOnTriangle();
     for (int rule = 0; rule < kTriangleRules; ++rule) {
-        errors.triangle[rule] = waveErrors(onTriangle(triangleRule(rule)), reference, kPi / 6);
+        errors.triangle[rule] = waveErrors(onTriangle(triangleRule(rule)), reference, pi / 6);
     }
     // Two of the finest product rule side by side and one above the other are the truth here.
     std::vector<PlanePoint> fine;
@@ -147,7 +147,7 @@ RuleErrors computeRuleErrors() {
         }
     }
     for (int rule = 0; rule < kIntervalRules; ++rule) {
-        errors.cell[rule] = waveErrors(onSquare(intervalRule(rule)), fine, kPi / 4);
+        errors.cell[rule] = waveErrors(onSquare(intervalRule(rule)), fine, pi / 4);
     }
     return errors;
 }

@@ -9,10 +9,6 @@
 
 namespace bandvox {
 
-namespace {
-constexpr double kPi = std::numbers::pi;
-}
-
 TileFilter::TileFilter(const TilePlan& plan)
     : mPlan(plan),
       mShift((plan.kernel.width() + 1) / 2),
@@ -27,7 +23,7 @@ TileFilter::TileFilter(const TilePlan& plan)
     mDifference.resize(2 * side);
     for (int i = 0; i < side; ++i) {
         const double k = static_cast<double>(i <= half ? i : i - side) / side;
-        const std::complex<double> turn(0, 2 * kPi * k);
+        const std::complex<double> turn(0, 2 * std::numbers::pi * k);
         const std::complex<double> d = i == 0 ? 1.0 : (1.0 - std::exp(-turn)) / turn;
         mDifference[2 * i] = static_cast<float>(d.real());
         mDifference[2 * i + 1] = static_cast<float>(d.imag());

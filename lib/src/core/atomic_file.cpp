@@ -20,6 +20,10 @@ namespace {
 
 constexpr int kMostLinks = 40;  // as Linux follows
 
+// What a file passes on to the one that replaces it. Who runs it, which the bits above say, was
+// granted to the older content.
+constexpr mode_t kPermissions = 0777;
+
 // Longer extensions are none that a format has.
 constexpr std::size_t kLongestExtension = 16;
 
@@ -35,6 +39,16 @@ fs::path folderOf(const fs::path& path) {
 bool isDescriptor(const fs::path& path) {
     std::error_code ignored;
     return fs::canonical(folderOf(path), ignored).string().starts_with("/proc/");
+}
+
+// Waits until what is in an open file or folder is on its disk. False if that failed, errno says
+// why; where it cannot be waited for, there is nothing to wait for.
+bool bringToDisk(int descriptor) {
+    while (::fsync(descriptor) != 0) {
+        if (errno == EINTR) continue;
+        return errno == EINVAL || errno == EROFS || errno == ENOTSUP;
+    }
+    return true;
 }
 
 // A name that no other process, and no other file of this one, uses.
@@ -85,7 +99,7 @@ AtomicFile::AtomicFile(fs::path target)
         }
         return;
     }
-    if (exists) mMode = status.st_mode & 07777;
+    if (exists) mMode = status.st_mode & kPermissions;
     requireFolder(mTarget, mReplaced);
 
     // Only making a file tells whether one can be made. Do it now, before the work.
@@ -101,7 +115,7 @@ void AtomicFile::create() {
     for (;;) {
         mTemporary = temporaryFor(mReplaced);
         mSlot = noteTemporary(mTemporary.string());
-        const mode_t mode = mMode ? (*mMode & 0777) | S_IWUSR : 0666;
+        const mode_t mode = mMode ? *mMode | S_IWUSR : 0666;
         const int descriptor =
             ::open(mTemporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
         if (descriptor >= 0) {
@@ -132,14 +146,33 @@ std::ofstream AtomicFile::open() {
     return stream;
 }
 
+void AtomicFile::complete() {
+    if (mInPlace || mCompleted) return;
+    const int descriptor = ::open(mTemporary.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor < 0) fail(mTarget, std::strerror(errno));
+    // Where permissions cannot be passed on, the file keeps those that it was made with.
+    if (mMode) ::fchmod(descriptor, *mMode);
+    // A name can reach the disk before what it names does, and the power can fail in between.
+    const bool done = bringToDisk(descriptor);
+    const int error = errno;
+    ::close(descriptor);
+    if (!done) fail(mTarget, std::strerror(error));
+    mCompleted = true;
+}
+
 void AtomicFile::commit() {
     if (!mInPlace) {
+        complete();
         std::error_code error;
-        // Where permissions cannot be passed on, the file keeps those that it was made with.
-        if (mMode) ::chmod(mTemporary.c_str(), *mMode);
         fs::rename(mTemporary, mReplaced, error);
         if (error) fail(mTarget, error.message());
         dropTemporary(mSlot);
+        // The file is whole under either name; so that the new one lasts is only tried.
+        const int folder = ::open(folderOf(mReplaced).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        if (folder >= 0) {
+            bringToDisk(folder);
+            ::close(folder);
+        }
     }
     mCommitted = true;
 }

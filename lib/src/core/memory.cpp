@@ -1,26 +1,19 @@
+#include "core/control_group.h"
+
 #include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
-#include <limits>
 #include <string>
 
 namespace bandvox {
 
 namespace {
-
-constexpr std::int64_t kUnlimited = std::numeric_limits<std::int64_t>::max();
-
-// The number in a file of one number, or kUnlimited if there is none ("max", no such file).
-std::int64_t numberIn(const char* path) {
-    std::ifstream file(path);
-    std::int64_t value = 0;
-    return file >> value ? value : kUnlimited;
-}
 
 std::int64_t availableInSystem() {
     std::ifstream file("/proc/meminfo");
@@ -30,25 +23,19 @@ std::int64_t availableInSystem() {
         std::getline(file, unit);
         if (key == "MemAvailable:") return kibibytes * 1024;
     }
-    return kUnlimited;
-}
-
-// What a control group (a container, a batch job) leaves; both versions of the interface.
-std::int64_t availableInControlGroup(const char* limitFile, const char* usageFile) {
-    const std::int64_t limit = numberIn(limitFile);
-    const std::int64_t usage = numberIn(usageFile);
-    if (limit == kUnlimited || usage == kUnlimited) return kUnlimited;
-    return std::max<std::int64_t>(0, limit - usage);
+    return kUnlimitedMemory;
 }
 
 // What the process's own limit on its address space leaves (ulimit -v).
 std::int64_t availableInAddressSpace() {
     rlimit limit{};
-    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnlimited;
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+        return kUnlimitedMemory;
     std::ifstream file("/proc/self/statm");
     std::int64_t pages = 0;
     file >> pages;
-    return std::max<std::int64_t>(0, static_cast<std::int64_t>(limit.rlim_cur) - pages * 4096);
+    const std::int64_t taken = pages * sysconf(_SC_PAGESIZE);
+    return std::max<std::int64_t>(0, static_cast<std::int64_t>(limit.rlim_cur) - taken);
 }
 
 std::string inGigabytes(double bytes) {
@@ -60,12 +47,7 @@ std::string inGigabytes(double bytes) {
 }  // namespace
 
 std::int64_t availableMemory() {
-    return std::min(
-        {availableInSystem(),
-         availableInControlGroup("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
-         availableInControlGroup("/sys/fs/cgroup/memory/memory.limit_in_bytes",
-                                 "/sys/fs/cgroup/memory/memory.usage_in_bytes"),
-         availableInAddressSpace()});
+    return std::min({availableInSystem(), availableInControlGroups(), availableInAddressSpace()});
 }
 
 std::int64_t peakMemory() {

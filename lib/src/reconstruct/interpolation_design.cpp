@@ -14,7 +14,7 @@ namespace bandvox {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // The prefilter's taps on each side: the halo of a brick is this and half a kernel.
 constexpr int kShortestPrefilter = 4;
@@ -58,7 +58,7 @@ KernelResponse kernelResponse(const SpreadingKernel& kernel) {
     }
     for (int m = 1; m <= kImages; ++m) {
         response.constantValue += 2 * std::abs(kernel.transform(m));
-        response.constantGradient += 4 * kPi * m * std::abs(kernel.transform(m));
+        response.constantGradient += 4 * pi * m * std::abs(kernel.transform(m));
     }
     return response;
 }
@@ -102,7 +102,7 @@ class PrefilterFit {
             const double pass = response.pass[i];
             const double image = response.imageGradient[i] / k;
             for (int l = 0; l <= kLongestPrefilter; ++l) {
-                basis[l] = (l == 0 ? 1 : 2) * std::cos(2 * kPi * k * l);
+                basis[l] = (l == 0 ? 1 : 2) * std::cos(2 * pi * k * l);
             }
             for (int l = 0; l <= kLongestPrefilter; ++l) {
                 for (int m = 0; m <= kLongestPrefilter; ++m) {
@@ -151,15 +151,15 @@ InterpolationError interpolationError(const ExponentialFilter& filter,
         const double k = frequency(i);
         double a = prefilter[0];
         for (std::size_t l = 1; l < prefilter.size(); ++l) {
-            a += 2 * prefilter[l] * std::cos(2 * kPi * k * static_cast<double>(l));
+            a += 2 * prefilter[l] * std::cos(2 * pi * k * static_cast<double>(l));
         }
         const double missed = std::abs(a * response.pass[i] - 1);
         const double weight = 2 * filter(k) * kFrequencyStep;
         gradient += weight * missed;
-        value += weight * missed / (2 * kPi * k);
+        value += weight * missed / (2 * pi * k);
         if (k * kLongestWave < 1) continue;
         gradient += weight * std::abs(a) * response.imageGradient[i] / k;
-        value += weight * std::abs(a) * response.imageValue[i] / (2 * kPi * k);
+        value += weight * std::abs(a) * response.imageValue[i] / (2 * pi * k);
     }
     // The constant inside the solid has images along each of the three axes.
     return {value + 3 * response.constantValue,
@@ -177,7 +177,7 @@ struct KernelChoice {
 KernelChoice bestKernel(const ExponentialFilter& filter, int width, double noise) {
     std::optional<KernelChoice> best;
     for (double edge = 0.1; edge < 0.47; edge += 0.02) {
-        const SpreadingKernel kernel(width, 0.985 * kPi * width * (1 - edge));
+        const SpreadingKernel kernel(width, 0.985 * pi * width * (1 - edge));
         KernelResponse response = kernelResponse(kernel);
         const auto prefilter = PrefilterFit(filter, response, noise).prefilter(kLongestPrefilter);
         const double error = interpolationError(filter, response, prefilter).worst();

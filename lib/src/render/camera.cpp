@@ -12,7 +12,7 @@ namespace bandvox {
 namespace {
 
 // Room left around a framed object, relative to its size in the picture.
-constexpr double kMargin = 1.04;
+constexpr double kFrameMargin = 1.04;
 
 // Directions closer to each other than this, as a sine, do not span a plane.
 constexpr double kSmallestSine = 1e-6;
@@ -140,7 +140,7 @@ Camera::Camera(const CameraOptions& options, int width, int height, const openvd
     const bool centered = !options.eye && !options.lookat;
     const auto corners = cornersFrom(lookat, *this, object);
     if (perspective) mHalfWidth = 0.5 * options.aperture / options.focal;
-    const double tangent = perspective ? mHalfWidth / kMargin : 0;
+    const double tangent = perspective ? mHalfWidth / kFrameMargin : 0;
     const Fit across = fit(corners, 0, tangent, centered);
     const Fit along = fit(corners, 1, tangent * aspect, centered);
     double distance = 0;
@@ -148,7 +148,7 @@ Camera::Camera(const CameraOptions& options, int width, int height, const openvd
         distance = std::max(across.reach / tangent, along.reach / (tangent * aspect));
     } else {
         const double fitted = std::max(across.reach, along.reach / aspect);
-        mHalfWidth = options.frame > 0 ? 0.5 * options.frame : kMargin * fitted;
+        mHalfWidth = options.frame > 0 ? 0.5 * options.frame : kFrameMargin * fitted;
         for (const openvdb::Vec3d& corner : corners) {
             distance = std::max(distance, fitted - corner[2]);
         }

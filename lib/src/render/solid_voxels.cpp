@@ -1,10 +1,9 @@
 #include "render/solid_voxels.h"
 
-#include <bandvox/core/parallel.h>
+#include "render/examine_leaves.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <vector>
 
 namespace bandvox {
@@ -15,16 +14,13 @@ using openvdb::Coord;
 using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
 
-// Leaves examined by one task.
-constexpr std::size_t kLeavesPerTask = 256;
-
-struct LeafFindings {
+struct SolidLeaf {
     Leaf::NodeMaskType solid;
     float maximum;
 };
 
-LeafFindings examine(const Leaf& leaf, float iso) {
-    LeafFindings found{{}, leaf.getValue(0)};
+SolidLeaf findSolid(const Leaf& leaf, float iso) {
+    SolidLeaf found{{}, leaf.getValue(0)};
     const float* values = leaf.buffer().data();
     for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
         found.maximum = std::max(found.maximum, values[i]);
@@ -136,14 +132,9 @@ SolidVoxels::SolidVoxels(const openvdb::FloatGrid& grid, double iso) : mMaximum(
     // Examine the leaves, then take over those with solid voxels, in their order.
     std::vector<const Leaf*> leaves;
     grid.tree().getNodes(leaves);
-    std::vector<LeafFindings> found(leaves.size());
     const auto limit = static_cast<float>(iso);
-    const std::size_t tasks = (leaves.size() + kLeavesPerTask - 1) / kLeavesPerTask;
-    parallelFor(static_cast<std::int64_t>(tasks), [&](std::int64_t task) {
-        const std::size_t begin = static_cast<std::size_t>(task) * kLeavesPerTask;
-        const std::size_t end = std::min(begin + kLeavesPerTask, leaves.size());
-        for (std::size_t i = begin; i < end; ++i) found[i] = examine(*leaves[i], limit);
-    });
+    const std::vector<SolidLeaf> found =
+        examineLeaves(leaves, [limit](const Leaf& leaf) { return findSolid(leaf, limit); });
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         mMaximum = std::max<double>(mMaximum, found[i].maximum);
         if (!found[i].solid.isOff()) {

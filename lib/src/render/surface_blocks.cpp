@@ -1,13 +1,12 @@
 #include "render/surface_blocks.h"
 
-#include <bandvox/core/parallel.h>
+#include "render/examine_leaves.h"
 
 #include <openvdb/math/DDA.h>
 #include <openvdb/math/Ray.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -22,12 +21,9 @@ constexpr int kBlockLog2 = 3;
 constexpr int kBlockSide = 1 << kBlockLog2;
 
 // The surface may lie this many voxels beyond the outermost high value of the lattice.
-constexpr int kMargin = 2;
+constexpr int kSurfaceMargin = 2;
 
-// Leaves examined by one task.
-constexpr std::size_t kLeavesPerTask = 256;
-
-struct LeafFindings {
+struct HighLeaf {
     openvdb::CoordBBox high;  // voxels at or above the threshold; empty if there are none
     float maximum;
     bool finite = true;
@@ -45,8 +41,8 @@ bool isFinite(float value) {
     return std::abs(value) <= kLargest;
 }
 
-LeafFindings examine(const Leaf& leaf, float threshold) {
-    LeafFindings found{openvdb::CoordBBox(), std::numeric_limits<float>::lowest()};
+HighLeaf findHigh(const Leaf& leaf, float threshold) {
+    HighLeaf found{openvdb::CoordBBox(), std::numeric_limits<float>::lowest()};
     const float* values = leaf.buffer().data();
     for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
         found.maximum = std::max(found.maximum, values[i]);
@@ -63,15 +59,10 @@ SurfaceBlocks::SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold)
     // Examine the leaves, then mark in their order.
     std::vector<const Leaf*> leaves;
     grid.tree().getNodes(leaves);
-    std::vector<LeafFindings> found(leaves.size());
     const auto limit = static_cast<float>(threshold);
-    const std::size_t tasks = (leaves.size() + kLeavesPerTask - 1) / kLeavesPerTask;
-    parallelFor(static_cast<std::int64_t>(tasks), [&](std::int64_t task) {
-        const std::size_t begin = static_cast<std::size_t>(task) * kLeavesPerTask;
-        const std::size_t end = std::min(begin + kLeavesPerTask, leaves.size());
-        for (std::size_t i = begin; i < end; ++i) found[i] = examine(*leaves[i], limit);
-    });
-    for (const LeafFindings& leaf : found) {
+    const std::vector<HighLeaf> found =
+        examineLeaves(leaves, [limit](const Leaf& leaf) { return findHigh(leaf, limit); });
+    for (const HighLeaf& leaf : found) {
         mMaximum = std::max<double>(mMaximum, leaf.maximum);
         mFinite = mFinite && leaf.finite;
         if (!leaf.high.empty()) mark(leaf.high);
@@ -94,7 +85,8 @@ SurfaceBlocks::SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold)
 }
 
 void SurfaceBlocks::mark(const openvdb::CoordBBox& voxels) {
-    openvdb::CoordBBox blocks(voxels.min().offsetBy(-kMargin), voxels.max().offsetBy(kMargin));
+    openvdb::CoordBBox blocks(voxels.min().offsetBy(-kSurfaceMargin),
+                              voxels.max().offsetBy(kSurfaceMargin));
     blocks.min() >>= kBlockLog2;
     blocks.max() >>= kBlockLog2;
     mBlocks.sparseFill(blocks, true, true);

@@ -1,14 +1,13 @@
 #include "source/cap_holes.h"
 
+#include "source/no_index.h"
+
 #include <algorithm>
 #include <cassert>
-#include <limits>
 #include <utility>
 
 namespace bandvox {
 namespace {
-
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 /// Takes the boundary of a piece apart into loops that pass through each point once.
 ///
@@ -17,7 +16,7 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 class LoopFinder {
   public:
     LoopFinder(const std::vector<BoundaryEdge>& edges, std::size_t pointCount)
-        : mEdges(edges), mNext(pointCount, kNone), mPosition(pointCount, kNone) {}
+        : mEdges(edges), mNext(pointCount, kNoIndex), mPosition(pointCount, kNoIndex) {}
 
     /// Calls visit(loop) for each loop of the edges [begin, end), which are of one piece.
     template <typename Visit>
@@ -42,7 +41,7 @@ class LoopFinder {
         mPosition[start] = 0;
         while (hasUnused(mPath.back())) {
             const std::uint32_t point = mEdges[mNext[mPath.back()]++].to;
-            if (mPosition[point] == kNone) {
+            if (mPosition[point] == kNoIndex) {
                 mPosition[point] = static_cast<std::uint32_t>(mPath.size());
                 mPath.push_back(point);
                 continue;
@@ -51,11 +50,11 @@ class LoopFinder {
             const auto first = mPath.begin() + mPosition[point];
             mLoop.assign(first, mPath.end());
             visit(mLoop);
-            for (auto p = first + 1; p != mPath.end(); ++p) mPosition[*p] = kNone;
+            for (auto p = first + 1; p != mPath.end(); ++p) mPosition[*p] = kNoIndex;
             mPath.erase(first + 1, mPath.end());
         }
         assert(mPath.size() == 1);
-        mPosition[start] = kNone;
+        mPosition[start] = kNoIndex;
     }
 
     const std::vector<BoundaryEdge>& mEdges;

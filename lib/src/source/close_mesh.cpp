@@ -21,7 +21,7 @@ using openvdb::Vec3d;
 using openvdb::Vec3I;
 
 /// Volume, relative to area times size, below which a mesh counts as flat.
-constexpr double kFlat = 1e-9;
+constexpr double kFlatMesh = 1e-9;
 
 /// Height of a triangle, relative to its longest edge, below which it has no area.
 constexpr double kNoHeight = 1e-12;
@@ -95,7 +95,7 @@ void requireVolume(const Mesh& mesh) {
         area.add(0.5 * normal.length());
     }
     const double size = box.extents().length();
-    if (std::abs(volume.value()) > kFlat * area.value() * size) return;
+    if (std::abs(volume.value()) > kFlatMesh * area.value() * size) return;
     std::ostringstream text;
     text << "the mesh is flat: it encloses a volume of " << volume.value() << " with an area of "
          << area.value() << " and a size of " << size << "; expected a solid";

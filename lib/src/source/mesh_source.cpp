@@ -16,17 +16,17 @@ using openvdb::Vec3d;
 
 /// Halvings after which a triangle is taken as it is. Two of them halve its longest edge, so
 /// this is enough for 2^32 voxels and ends the recursion on coordinates that make no sense.
-constexpr int kDeepestSplit = 64;
+constexpr int kDeepestTriangleSplit = 64;
 
 /// What stays the same while a triangle is being split.
-struct Sampling {
+struct TriangleSampling {
     const SurfaceQuadrature& quadrature;
     RegionClip clip;
     std::vector<SurfaceSample>& samples;
 };
 
 /// The lowest rule that is accurate on a triangle with this longest edge, or kTriangleRules.
-int lowestRule(const SurfaceQuadrature& quadrature, double edgeSquared) {
+int lowestTriangleRule(const SurfaceQuadrature& quadrature, double edgeSquared) {
     int rule = 0;
     while (rule < kTriangleRules &&
            quadrature.triangleEdge[rule] * quadrature.triangleEdge[rule] < edgeSquared) {
@@ -36,7 +36,7 @@ int lowestRule(const SurfaceQuadrature& quadrature, double edgeSquared) {
 }
 
 void applyRule(int rule, const std::array<Vec3d, 3>& corner, const Vec3d& areaVector,
-               const Sampling& sampling) {
+               const TriangleSampling& sampling) {
     const Vec3d e1 = corner[1] - corner[0];
     const Vec3d e2 = corner[2] - corner[0];
     for (const TrianglePoint& p : triangleRule(rule)) {
@@ -46,7 +46,7 @@ void applyRule(int rule, const std::array<Vec3d, 3>& corner, const Vec3d& areaVe
 }
 
 void sampleTriangle(const std::array<Vec3d, 3>& corner, const Vec3d& areaVector, int depth,
-                    const Sampling& sampling) {
+                    const TriangleSampling& sampling) {
     // Find the longest edge; edge i lies opposite corner i.
     int longest = 0;
     double longestSquared = -1.0;
@@ -58,8 +58,8 @@ void sampleTriangle(const std::array<Vec3d, 3>& corner, const Vec3d& areaVector,
         }
     }
 
-    const int rule = lowestRule(sampling.quadrature, longestSquared);
-    if (rule < kTriangleRules || depth == kDeepestSplit) {
+    const int rule = lowestTriangleRule(sampling.quadrature, longestSquared);
+    if (rule < kTriangleRules || depth == kDeepestTriangleSplit) {
         applyRule(std::min(rule, kTriangleRules - 1), corner, areaVector, sampling);
         return;
     }

@@ -1,14 +1,13 @@
 #include "source/orient_components.h"
 
+#include "source/no_index.h"
+
 #include <algorithm>
-#include <limits>
 #include <tuple>
 #include <utility>
 
 namespace bandvox {
 namespace {
-
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 /// Directed edges: number 3·t + k runs from corner k of triangle t to the next.
 class DirectedEdges {
@@ -78,12 +77,12 @@ class Walk {
         for (std::size_t i = 0; i < mTriangles.size(); ++i) {
             const std::uint32_t t = mTriangles[i];
             for (std::uint32_t e = 3 * t; e < 3 * t + 3; ++e) {
-                if (mMate[e] == kNone) continue;
+                if (mMate[e] == kNoIndex) continue;
                 // Neighbours agree if they run along their edge in opposite directions.
                 const std::uint32_t other = mMate[e] / 3;
                 const bool same = mEdges.rises(e) == mEdges.rises(mMate[e]);
                 const bool flip = same != (mFlipped[t] != 0);
-                if (mComponents.ofTriangle[other] == kNone) {
+                if (mComponents.ofTriangle[other] == kNoIndex) {
                     mComponents.ofTriangle[other] = component;
                     mFlipped[other] = flip ? 1 : 0;
                     flips += flip ? 1 : 0;
@@ -139,10 +138,10 @@ MeshComponents orientComponents(Mesh& mesh) {
     const std::vector<std::uint32_t> order = groupEdges(edges, mesh.points.size());
 
     MeshComponents components;
-    components.ofTriangle.assign(mesh.triangles.size(), kNone);
+    components.ofTriangle.assign(mesh.triangles.size(), kNoIndex);
 
     // Find the neighbours across edges of exactly two triangles.
-    std::vector<std::uint32_t> mate(edges.count(), kNone);
+    std::vector<std::uint32_t> mate(edges.count(), kNoIndex);
     forEachGroup(edges, order, [&](std::size_t begin, std::size_t end) {
         if (end - begin == 2) {
             mate[order[begin]] = order[begin + 1];
@@ -155,7 +154,7 @@ MeshComponents orientComponents(Mesh& mesh) {
     std::vector<char> flipped(mesh.triangles.size(), 0);
     Walk walk(edges, mate, components, flipped);
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-        if (components.ofTriangle[t] == kNone) walk.visitComponent(t);
+        if (components.ofTriangle[t] == kNoIndex) walk.visitComponent(t);
     }
 
     // Collect what each piece leaves open.

@@ -17,10 +17,10 @@ using openvdb::Vec3d;
 constexpr double kVoxelsPerRadian = 1.0;
 
 /// Halvings after which a cell is taken as it is.
-constexpr int kDeepestSplit = 64;
+constexpr int kDeepestCellSplit = 64;
 
 /// What stays the same while a patch is being split.
-struct Sampling {
+struct PatchSampling {
     const Patch& patch;
     double voxelSize;
     const SurfaceQuadrature& quadrature;
@@ -47,7 +47,7 @@ double simpson(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     return (a.length() + 4.0 * b.length() + c.length()) / 6.0;
 }
 
-CellSize measure(const ParameterCell& cell, const Sampling& sampling) {
+CellSize measure(const ParameterCell& cell, const PatchSampling& sampling) {
     const double us[3] = {cell.u0, 0.5 * (cell.u0 + cell.u1), cell.u1};
     const double vs[3] = {cell.v0, 0.5 * (cell.v0 + cell.v1), cell.v1};
     PatchPoint p[3][3];
@@ -72,14 +72,14 @@ CellSize measure(const ParameterCell& cell, const Sampling& sampling) {
 }
 
 /// The lowest rule that is accurate on this length, or kIntervalRules.
-int lowestRule(const SurfaceQuadrature& quadrature, double length) {
+int lowestIntervalRule(const SurfaceQuadrature& quadrature, double length) {
     const auto& sides = quadrature.cellSide;
     return static_cast<int>(
         std::find_if(sides.begin(), sides.end(), [length](double s) { return s >= length; }) -
         sides.begin());
 }
 
-void applyRules(int uRule, int vRule, const ParameterCell& cell, const Sampling& sampling) {
+void applyRules(int uRule, int vRule, const ParameterCell& cell, const PatchSampling& sampling) {
     const double du = cell.u1 - cell.u0;
     const double dv = cell.v1 - cell.v0;
     const double lengthScale = 1.0 / sampling.voxelSize;
@@ -95,7 +95,7 @@ void applyRules(int uRule, int vRule, const ParameterCell& cell, const Sampling&
     }
 }
 
-void sampleCell(const ParameterCell& cell, int depth, const Sampling& sampling) {
+void sampleCell(const ParameterCell& cell, int depth, const PatchSampling& sampling) {
     // Leave out what the region cannot see; this changes no point that it can.
     const openvdb::BBoxd box = sampling.patch.bounds(cell);
     if (sampling.clip.misses(box.min() / sampling.voxelSize, box.max() / sampling.voxelSize)) {
@@ -103,9 +103,9 @@ void sampleCell(const ParameterCell& cell, int depth, const Sampling& sampling) 
     }
 
     const CellSize size = measure(cell, sampling);
-    const int uRule = lowestRule(sampling.quadrature, size.u);
-    const int vRule = lowestRule(sampling.quadrature, size.v);
-    if ((uRule < kIntervalRules && vRule < kIntervalRules) || depth == kDeepestSplit) {
+    const int uRule = lowestIntervalRule(sampling.quadrature, size.u);
+    const int vRule = lowestIntervalRule(sampling.quadrature, size.v);
+    if ((uRule < kIntervalRules && vRule < kIntervalRules) || depth == kDeepestCellSplit) {
         applyRules(std::min(uRule, kIntervalRules - 1), std::min(vRule, kIntervalRules - 1), cell,
                    sampling);
         return;

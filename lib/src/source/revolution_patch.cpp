@@ -7,7 +7,7 @@
 namespace bandvox {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Interval {
     double min, max;
@@ -16,14 +16,14 @@ struct Interval {
 /// The range of the cosine between two angles, a ≤ b.
 Interval cosineRange(double a, double b) {
     const auto passes = [a, b](double phase) {
-        return std::ceil((a - phase) / (2.0 * kPi)) <= (b - phase) / (2.0 * kPi);
+        return std::ceil((a - phase) / (2.0 * pi)) <= (b - phase) / (2.0 * pi);
     };
     const auto [low, high] = std::minmax({std::cos(a), std::cos(b)});
-    return {passes(kPi) ? -1.0 : low, passes(0.0) ? 1.0 : high};
+    return {passes(pi) ? -1.0 : low, passes(0.0) ? 1.0 : high};
 }
 
 Interval sineRange(double a, double b) {
-    return cosineRange(a - 0.5 * kPi, b - 0.5 * kPi);
+    return cosineRange(a - 0.5 * pi, b - 0.5 * pi);
 }
 
 /// The range of r·c for r ≥ 0.
@@ -93,8 +93,8 @@ openvdb::BBoxd RevolutionPatch::bounds(const ParameterCell& cell) const {
 void appendRevolution(const std::shared_ptr<const Profile>& profile, const openvdb::Vec3d& center,
                       PatchList& patches) {
     for (int quarter = 0; quarter < 4; ++quarter) {
-        patches.push_back(std::make_unique<RevolutionPatch>(profile, center, 0.5 * kPi * quarter,
-                                                            0.5 * kPi * (quarter + 1)));
+        patches.push_back(std::make_unique<RevolutionPatch>(profile, center, 0.5 * pi * quarter,
+                                                            0.5 * pi * (quarter + 1)));
     }
 }
 

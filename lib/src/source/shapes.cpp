@@ -16,8 +16,8 @@ namespace {
 
 using openvdb::BBoxd;
 using openvdb::Vec3d;
+using std::numbers::pi;
 
-constexpr double kPi = std::numbers::pi;
 constexpr std::string_view kPrefix = "shape:";
 
 constexpr double kHyperboloidWaist = 0.3;
@@ -52,26 +52,26 @@ std::unique_ptr<BoundarySource> makeHyperboloid(std::string name) {
     appendRevolution(std::make_shared<LineProfile>(rim, 1.0, 0.0, 1.0), origin, patches);
 
     // The side's area is 4π ∫ sqrt(waist² + q²·y²) dy from 0 to 1.
-    const double volume = 2.0 * kPi * (waist * waist + slope * slope / 3.0);
+    const double volume = 2.0 * pi * (waist * waist + slope * slope / 3.0);
     const double q = slope * std::hypot(1.0, slope);
     const double side =
-        2.0 * kPi * (std::hypot(waist, q) + waist * waist / q * std::asinh(q / waist));
+        2.0 * pi * (std::hypot(waist, q) + waist * waist / q * std::asinh(q / waist));
     return std::make_unique<PatchSource>(std::move(name), std::move(patches), volume,
-                                         side + 2.0 * kPi * rim * rim);
+                                         side + 2.0 * pi * rim * rim);
 }
 
 void appendSphere(const Vec3d& center, double radius, PatchList& patches) {
-    for (const double from : {-0.5 * kPi, 0.0}) {
-        appendRevolution(std::make_shared<ArcProfile>(0.0, 0.0, radius, from, from + 0.5 * kPi),
+    for (const double from : {-0.5 * pi, 0.0}) {
+        appendRevolution(std::make_shared<ArcProfile>(0.0, 0.0, radius, from, from + 0.5 * pi),
                          center, patches);
     }
 }
 
 double sphereVolume(double radius) {
-    return 4.0 / 3.0 * kPi * radius * radius * radius;
+    return 4.0 / 3.0 * pi * radius * radius * radius;
 }
 double sphereArea(double radius) {
-    return 4.0 * kPi * radius * radius;
+    return 4.0 * pi * radius * radius;
 }
 
 std::unique_ptr<BoundarySource> makeSphere(std::string name) {
@@ -93,14 +93,13 @@ std::unique_ptr<BoundarySource> makeTwoBalls(std::string name) {
 std::unique_ptr<BoundarySource> makeTorus(std::string name) {
     PatchList patches;
     for (int quarter = 0; quarter < 4; ++quarter) {
-        appendRevolution(
-            std::make_shared<ArcProfile>(kTorusRing, 0.0, kTorusTube, 0.5 * kPi * quarter,
-                                         0.5 * kPi * (quarter + 1)),
-            Vec3d(0.0), patches);
+        appendRevolution(std::make_shared<ArcProfile>(kTorusRing, 0.0, kTorusTube,
+                                                      0.5 * pi * quarter, 0.5 * pi * (quarter + 1)),
+                         Vec3d(0.0), patches);
     }
     return std::make_unique<PatchSource>(std::move(name), std::move(patches),
-                                         2.0 * kPi * kPi * kTorusRing * kTorusTube * kTorusTube,
-                                         4.0 * kPi * kPi * kTorusRing * kTorusTube);
+                                         2.0 * pi * pi * kTorusRing * kTorusTube * kTorusTube,
+                                         4.0 * pi * pi * kTorusRing * kTorusTube);
 }
 
 std::unique_ptr<BoundarySource> makeCube(std::string name) {

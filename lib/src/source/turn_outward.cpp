@@ -16,7 +16,7 @@ using openvdb::Vec3d;
 using openvdb::Vec3I;
 
 /// Volume, relative to area times size, below which a piece counts as flat.
-constexpr double kFlat = 1e-12;
+constexpr double kFlatPiece = 1e-12;
 
 /// A closed piece as a whole.
 struct Piece {
@@ -25,7 +25,7 @@ struct Piece {
     double area = 0;
     std::uint32_t largestTriangle = 0;
 
-    bool insideOut() const { return volume < -kFlat * area * box.extents().length(); }
+    bool insideOut() const { return volume < -kFlatPiece * area * box.extents().length(); }
 };
 
 std::vector<Piece> measurePieces(const Mesh& mesh, const MeshComponents& components) {

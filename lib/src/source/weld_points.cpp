@@ -1,10 +1,11 @@
 #include "source/weld_points.h"
 
+#include "source/no_index.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -12,8 +13,6 @@ namespace bandvox {
 namespace {
 
 using openvdb::Vec3d;
-
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 /// Side of a cell of the grid that finds near points, in tolerances: so large that most points
 /// are far from their cell's border and need no look into a neighbour.
@@ -40,7 +39,7 @@ class HashTable {
     explicit HashTable(std::size_t capacity)
         : mMask(std::bit_ceil(2 * capacity + 1) - 1), mEntries(mMask + 1) {}
 
-    /// The number stored for `key`, kNone at first.
+    /// The number stored for `key`, kNoIndex at first.
     std::uint32_t& operator[](const Key& key) {
         std::size_t slot = hash(key) & mMask;
         while (mEntries[slot].used && mEntries[slot].key != key) slot = (slot + 1) & mMask;
@@ -49,17 +48,17 @@ class HashTable {
         return mEntries[slot].value;
     }
 
-    /// The number stored for `key`, or kNone.
+    /// The number stored for `key`, or kNoIndex.
     std::uint32_t find(const Key& key) const {
         std::size_t slot = hash(key) & mMask;
         while (mEntries[slot].used && mEntries[slot].key != key) slot = (slot + 1) & mMask;
-        return mEntries[slot].used ? mEntries[slot].value : kNone;
+        return mEntries[slot].used ? mEntries[slot].value : kNoIndex;
     }
 
   private:
     struct Entry {
         Key key{};
-        std::uint32_t value = kNone;
+        std::uint32_t value = kNoIndex;
         bool used = false;
     };
     std::size_t mMask;
@@ -81,7 +80,7 @@ void weldEqualPoints(Mesh& mesh) {
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
         const Vec3d p = mesh.points[i] + Vec3d(0.0);  // makes -0 a 0, which has other bits
         std::uint32_t& index = table[Key{p.x(), p.y(), p.z()}];
-        if (index == kNone) {
+        if (index == kNoIndex) {
             index = count;
             mesh.points[count++] = p;
         }
@@ -99,7 +98,7 @@ class NearPoints {
         mNext.reserve(capacity);
     }
 
-    /// An added point within the tolerance of p, or kNone.
+    /// An added point within the tolerance of p, or kNoIndex.
     std::uint32_t find(const Vec3d& p, const std::vector<Vec3d>& points) const {
         const Key lower = cellOf(p - Vec3d(mTolerance));
         const Key upper = cellOf(p + Vec3d(mTolerance));
@@ -107,13 +106,13 @@ class NearPoints {
             for (std::int64_t y = lower[1]; y <= upper[1]; ++y) {
                 for (std::int64_t z = lower[2]; z <= upper[2]; ++z) {
                     std::uint32_t i = mHeads.find(Key{x, y, z});
-                    for (; i != kNone; i = mNext[i]) {
+                    for (; i != kNoIndex; i = mNext[i]) {
                         if ((points[i] - p).lengthSqr() <= mTolerance * mTolerance) return i;
                     }
                 }
             }
         }
-        return kNone;
+        return kNoIndex;
     }
 
     /// Adds p as the point with the next number.
@@ -145,7 +144,7 @@ void weldNearPoints(Mesh& mesh, double tolerance) {
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
         const Vec3d p = mesh.points[i];
         std::uint32_t index = near.find(p, mesh.points);
-        if (index == kNone) {
+        if (index == kNoIndex) {
             near.add(p);
             mesh.points[count] = p;
             index = count++;
@@ -159,13 +158,13 @@ void weldNearPoints(Mesh& mesh, double tolerance) {
 }  // namespace
 
 void removeUnusedPoints(Mesh& mesh) {
-    std::vector<std::uint32_t> newIndex(mesh.points.size(), kNone);
+    std::vector<std::uint32_t> newIndex(mesh.points.size(), kNoIndex);
     for (const openvdb::Vec3I& t : mesh.triangles) {
         for (int i = 0; i < 3; ++i) newIndex[t[i]] = 0;
     }
     std::uint32_t count = 0;
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-        if (newIndex[i] == kNone) continue;
+        if (newIndex[i] == kNoIndex) continue;
         mesh.points[count] = mesh.points[i];
         newIndex[i] = count++;
     }

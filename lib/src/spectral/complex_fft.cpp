@@ -1,6 +1,7 @@
 #include "spectral/complex_fft.h"
 
 #include "spectral/fft.h"
+#include "spectral/fftw.h"
 
 #include <fftw3.h>
 
@@ -12,38 +13,6 @@
 namespace bandvox {
 
 namespace {
-
-// FFTW's functions for one precision under common names.
-template <typename Real>
-struct Fftw;
-
-template <>
-struct Fftw<float> {
-    using Plan = fftwf_plan;
-    using Complex = fftwf_complex;
-    static constexpr auto planComplex = &fftwf_plan_many_dft;
-    static constexpr auto planHalf = &fftwf_plan_many_dft_c2r;
-    static constexpr auto execute = &fftwf_execute_dft;
-    static constexpr auto executeHalf = &fftwf_execute_dft_c2r;
-    static constexpr auto destroy = &fftwf_destroy_plan;
-    static constexpr auto alignment = &fftwf_alignment_of;
-    static constexpr auto allocate = &fftwf_malloc;
-    static constexpr auto release = &fftwf_free;
-};
-
-template <>
-struct Fftw<double> {
-    using Plan = fftw_plan;
-    using Complex = fftw_complex;
-    static constexpr auto planComplex = &fftw_plan_many_dft;
-    static constexpr auto planHalf = &fftw_plan_many_dft_c2r;
-    static constexpr auto execute = &fftw_execute_dft;
-    static constexpr auto executeHalf = &fftw_execute_dft_c2r;
-    static constexpr auto destroy = &fftw_destroy_plan;
-    static constexpr auto alignment = &fftw_alignment_of;
-    static constexpr auto allocate = &fftw_malloc;
-    static constexpr auto release = &fftw_free;
-};
 
 std::size_t extent(int n, int batch, const FftLayout& layout) {
     return static_cast<std::size_t>(n - 1) * layout.stride +
@@ -79,29 +48,21 @@ const Value& cached(const Key& key, const Make& make) {
 // One plan for data on FFTW's alignment, which may use vector instructions, one for any other.
 template <typename Real>
 struct FftPlanPair {
-    using Plan = typename Fftw<Real>::Plan;
-
-    /// `make` is called with the planner's flags.
+    /// `make` is called with the planner's flags. Throws Error(ErrorKind::Runtime) if there is no
+    /// plan for n points.
     template <typename Make>
-    explicit FftPlanPair(const Make& make)
-        : aligned(make(FFTW_ESTIMATE)), unaligned(make(FFTW_ESTIMATE | FFTW_UNALIGNED)) {
-        if (!aligned || !unaligned) throw std::bad_alloc();
-    }
-    ~FftPlanPair() {
-        Fftw<Real>::destroy(aligned);
-        Fftw<Real>::destroy(unaligned);
-    }
-    FftPlanPair(const FftPlanPair&) = delete;
-    FftPlanPair& operator=(const FftPlanPair&) = delete;
+    FftPlanPair(int n, const Make& make)
+        : aligned(takePlan<Real>(n, make(FFTW_ESTIMATE))),
+          unaligned(takePlan<Real>(n, make(FFTW_ESTIMATE | FFTW_UNALIGNED))) {}
 
-    Plan suiting(const void* in, const void* out) const {
+    typename Fftw<Real>::Plan suiting(const void* in, const void* out) const {
         const auto alignment = [](const void* data) {
             return Fftw<Real>::alignment(const_cast<Real*>(static_cast<const Real*>(data)));
         };
-        return alignment(in) == 0 && alignment(out) == 0 ? aligned : unaligned;
+        return (alignment(in) == 0 && alignment(out) == 0 ? aligned : unaligned).get();
     }
 
-    const Plan aligned, unaligned;
+    const FftwPlan<Real> aligned, unaligned;
 };
 
 template <typename Real>
@@ -113,7 +74,7 @@ ComplexFft<Real>::ComplexFft(int n, int batch, FftDirection direction, FftLayout
     auto* from = reinterpret_cast<Complex*>(source.data);
     auto* to = inPlace ? from : reinterpret_cast<Complex*>(target.data);
     const int sign = direction == FftDirection::Forward ? FFTW_FORWARD : FFTW_BACKWARD;
-    mPlans = std::make_unique<FftPlanPair<Real>>([&](unsigned flags) {
+    mPlans = std::make_unique<FftPlanPair<Real>>(n, [&](unsigned flags) {
         return Fftw<Real>::planComplex(
             1, &n, batch, from, nullptr, static_cast<int>(in.stride), static_cast<int>(in.distance),
             to, nullptr, static_cast<int>(out.stride), static_cast<int>(out.distance), sign, flags);
@@ -145,7 +106,7 @@ HalfComplexFft<Real>::HalfComplexFft(int n, int batch, FftLayout in, FftLayout o
     using Complex = typename Fftw<Real>::Complex;
     const PlanningBuffer<Real> source(2 * extent(n / 2 + 1, batch, in));
     const PlanningBuffer<Real> target(extent(n, batch, out));
-    mPlans = std::make_unique<FftPlanPair<Real>>([&](unsigned flags) {
+    mPlans = std::make_unique<FftPlanPair<Real>>(n, [&](unsigned flags) {
         return Fftw<Real>::planHalf(1, &n, batch, reinterpret_cast<Complex*>(source.data), nullptr,
                                     static_cast<int>(in.stride), static_cast<int>(in.distance),
                                     target.data, nullptr, static_cast<int>(out.stride),

@@ -13,7 +13,7 @@ namespace bandvox {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // The integral over k is a midpoint sum in steps of kFrequencyStep; a step of 1/P repeats the
 // half-space every P voxels, so P only has to be far beyond the longest reach.
@@ -32,13 +32,13 @@ class HalfSpace {
     explicit HalfSpace(const ExponentialFilter& filter) {
         const double highest = highestFrequency(filter);
         for (double k = kFrequencyStep / 2; k < highest; k += kFrequencyStep) {
-            mWeights.push_back(filter(k) / (kPi * k) * kFrequencyStep);
+            mWeights.push_back(filter(k) / (pi * k) * kFrequencyStep);
         }
     }
 
     double density(double distance) const {
         // sin(2πkr) for k in equal steps, by turning a number of length 1.
-        const double angle = 2 * kPi * kFrequencyStep * distance;
+        const double angle = 2 * pi * kFrequencyStep * distance;
         const double c = std::cos(angle);
         const double s = std::sin(angle);
         double re = std::cos(angle / 2);

@@ -1,5 +1,7 @@
 #include "spectral/fft.h"
 
+#include "spectral/fftw.h"
+
 #include <fftw3.h>
 
 #include <algorithm>
@@ -33,8 +35,8 @@ void FftBufferDeleter::operator()(float* data) const {
 
 // One plan for each axis and direction, each for a whole plane of rows.
 struct RealFft3::Plans {
-    fftwf_plan forwardZ = nullptr, forwardY = nullptr, forwardX = nullptr;
-    fftwf_plan inverseZ = nullptr, inverseY = nullptr, inverseX = nullptr;
+    FftwPlan<float> forwardZ, forwardY, forwardX;
+    FftwPlan<float> inverseZ, inverseY, inverseX;
 };
 
 RealFft3::RealFft3(int n, int margin, int zMargin, int inner)
@@ -51,13 +53,16 @@ RealFft3::RealFft3(int n, int margin, int zMargin, int inner)
     const int rowStride = mZStride / 2;
     const int planeStride = mYCount * rowStride;
 
-    mPlans->forwardZ = fftwf_plan_many_dft_r2c(1, &n, n, real, nullptr, 1, mZStride, complex,
-                                               nullptr, 1, rowStride, FFTW_ESTIMATE);
-    mPlans->inverseZ = fftwf_plan_many_dft_c2r(1, &n, mInner, complex, nullptr, 1, rowStride, real,
-                                               nullptr, 1, mZStride, FFTW_ESTIMATE);
+    mPlans->forwardZ =
+        takePlan<float>(n, fftwf_plan_many_dft_r2c(1, &n, n, real, nullptr, 1, mZStride, complex,
+                                                   nullptr, 1, rowStride, FFTW_ESTIMATE));
+    mPlans->inverseZ =
+        takePlan<float>(n, fftwf_plan_many_dft_c2r(1, &n, mInner, complex, nullptr, 1, rowStride,
+                                                   real, nullptr, 1, mZStride, FFTW_ESTIMATE));
     const auto planComplex = [&](int stride, int sign) {
-        return fftwf_plan_many_dft(1, &n, frequencies, complex, nullptr, stride, 1, complex,
-                                   nullptr, stride, 1, sign, FFTW_ESTIMATE);
+        return takePlan<float>(
+            n, fftwf_plan_many_dft(1, &n, frequencies, complex, nullptr, stride, 1, complex,
+                                   nullptr, stride, 1, sign, FFTW_ESTIMATE));
     };
     mPlans->forwardY = planComplex(rowStride, FFTW_FORWARD);
     mPlans->inverseY = planComplex(rowStride, FFTW_BACKWARD);
@@ -65,12 +70,7 @@ RealFft3::RealFft3(int n, int margin, int zMargin, int inner)
     mPlans->inverseX = planComplex(planeStride, FFTW_BACKWARD);
 }
 
-RealFft3::~RealFft3() {
-    for (fftwf_plan plan : {mPlans->forwardZ, mPlans->forwardY, mPlans->forwardX, mPlans->inverseZ,
-                            mPlans->inverseY, mPlans->inverseX}) {
-        fftwf_destroy_plan(plan);
-    }
-}
+RealFft3::~RealFft3() = default;
 
 const RealFft3& RealFft3::get(int n, int margin, int zMargin, int inner) {
     static std::map<std::tuple<int, int, int, int>, std::unique_ptr<RealFft3>> plans;
@@ -97,12 +97,12 @@ void RealFft3::forward(float* data) const {
     for (int x = 0; x < mSize; ++x) {
         float* real = data + x * plane;
         auto* complex = reinterpret_cast<fftwf_complex*>(real);
-        fftwf_execute_dft_r2c(mPlans->forwardZ, real, complex);
-        fftwf_execute_dft(mPlans->forwardY, complex, complex);
+        fftwf_execute_dft_r2c(mPlans->forwardZ.get(), real, complex);
+        fftwf_execute_dft(mPlans->forwardY.get(), complex, complex);
     }
     for (int y = 0; y < mSize; ++y) {
         auto* complex = reinterpret_cast<fftwf_complex*>(data + y * mZStride);
-        fftwf_execute_dft(mPlans->forwardX, complex, complex);
+        fftwf_execute_dft(mPlans->forwardX.get(), complex, complex);
     }
 }
 
@@ -110,13 +110,13 @@ void RealFft3::inverse(float* data, int first) const {
     const std::size_t plane = static_cast<std::size_t>(mYCount) * mZStride;
     for (int y = 0; y < mSize; ++y) {
         auto* complex = reinterpret_cast<fftwf_complex*>(data + y * mZStride);
-        fftwf_execute_dft(mPlans->inverseX, complex, complex);
+        fftwf_execute_dft(mPlans->inverseX.get(), complex, complex);
     }
     for (int x = first; x < first + mInner; ++x) {
         auto* complex = reinterpret_cast<fftwf_complex*>(data + x * plane);
-        fftwf_execute_dft(mPlans->inverseY, complex, complex);
+        fftwf_execute_dft(mPlans->inverseY.get(), complex, complex);
         float* rows = data + x * plane + static_cast<std::size_t>(first) * mZStride;
-        fftwf_execute_dft_c2r(mPlans->inverseZ, reinterpret_cast<fftwf_complex*>(rows), rows);
+        fftwf_execute_dft_c2r(mPlans->inverseZ.get(), reinterpret_cast<fftwf_complex*>(rows), rows);
     }
 }
 

@@ -12,7 +12,7 @@ namespace bandvox {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // Accuracy of the polynomials relative to ψ(0), a little above a float's.
 constexpr double kPolynomialError = 1e-7;
@@ -27,7 +27,7 @@ double sinhRatio(double z) {
 
 // ψ̂(k) times sinh β / β.
 double kernelTransform(int width, double beta, double k) {
-    const double a = kPi * width * k;
+    const double a = pi * width * k;
     return sinhRatio(beta * beta - a * a);
 }
 
@@ -39,7 +39,7 @@ std::vector<double> interpolate(int degree, const Function& f) {
     const int n = degree + 1;
     std::vector<double> chebyshev(n, 0.0);
     for (int i = 0; i < n; ++i) {
-        const double angle = kPi * (i + 0.5) / n;
+        const double angle = pi * (i + 0.5) / n;
         const double value = f(std::cos(angle));
         for (int m = 0; m < n; ++m) {
             chebyshev[m] += (m == 0 ? 1.0 : 2.0) / n * value * std::cos(m * angle);
@@ -184,7 +184,7 @@ double aliasErrorOf(const ExponentialFilter& filter, int width, double beta) {
             aliases += std::abs(kernelTransform(width, beta, m - k)) +
                        std::abs(kernelTransform(width, beta, m + k));
         }
-        error += filter(k) * aliases / std::abs(kernelTransform(width, beta, k)) / (2 * kPi * k);
+        error += filter(k) * aliases / std::abs(kernelTransform(width, beta, k)) / (2 * pi * k);
     }
     return 2 * error * kStep;
 }

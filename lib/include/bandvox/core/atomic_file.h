@@ -13,9 +13,10 @@ namespace bandvox {
 std::filesystem::path followLinks(std::filesystem::path path);
 
 /// An output file that appears whole or not at all: it is written under a temporary name in the
-/// folder of its target, and takes the target's name when it is committed.
+/// folder of its target, and takes the target's name when it is committed and on the disk.
 ///
-/// Links are followed. A file that is replaced passes its permissions on. What cannot be replaced
+/// Links are followed. A file that is replaced passes its permissions on, except for those to run
+/// as somebody else. What cannot be replaced
 /// is written in place: a character device, a pipe, one of the process's own descriptors.
 class AtomicFile {
   public:
@@ -42,7 +43,11 @@ class AtomicFile {
     /// extension. Empty before that, and if the target is written in place.
     const std::filesystem::path& temporary() const { return mTemporary; }
 
-    /// Gives the written file the target's name, replacing what was there. Throws
+    /// Waits until the written file is on the disk, so that committing it hardly can fail. To be
+    /// called, if at all, after the last write. Throws Error(ErrorKind::Runtime) if that fails.
+    void complete();
+
+    /// Completes the written file and gives it the target's name, replacing what was there. Throws
     /// Error(ErrorKind::Runtime) if that fails.
     void commit();
 
@@ -60,6 +65,7 @@ class AtomicFile {
     bool mInPlace = false;
     std::optional<mode_t> mMode;  // of the file that is replaced
     int mSlot = -1;               // in the table of temporaries
+    bool mCompleted = false;
     bool mCommitted = false;
 };
 
