@@ -341,5 +341,35 @@ TEST(Convert, OutputOpensInPython) {
     EXPECT_EQ(result.status, 0) << result.err;
 }
 
+// Blender does not only list the grid, it makes a surface of it where the density is one half.
+TEST(Convert, OutputOpensInBlender) {
+    if (!hasProgram("blender")) GTEST_SKIP() << "Blender is not installed";
+    const TemporaryFolder folder;
+    ASSERT_EQ(runBandvox({"convert", "shape:cube", "-o", "cube.vdb", "-r", "32"},
+                         {.folder = folder.path()})
+                  .status,
+              0);
+    writeText(folder / "open.py",
+              "import bpy, sys\n"
+              "bpy.ops.object.volume_import(filepath=sys.argv[-1])\n"
+              "volume = bpy.context.object\n"
+              "surface = bpy.data.objects.new('surface', bpy.data.meshes.new('surface'))\n"
+              "bpy.context.scene.collection.objects.link(surface)\n"
+              "change = surface.modifiers.new('surface', 'VOLUME_TO_MESH')\n"
+              "change.object = volume\n"
+              "change.grid_name = 'density'\n"
+              "change.threshold = 0.5\n"
+              "graph = bpy.context.evaluated_depsgraph_get()\n"
+              "points = [v.co for v in surface.evaluated_get(graph).to_mesh().vertices]\n"
+              "print('EXTENT', *(round(max(p[i] for p in points) - min(p[i] for p in points), 1)"
+              " for i in range(3)))\n");
+    const RunResult result =
+        runProgram({"blender", "-b", "--factory-startup", "-P", (folder / "open.py").string(), "--",
+                    (folder / "cube.vdb").string()},
+                   {.folder = folder.path()});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("EXTENT 2.0 2.0 2.0"), std::string::npos) << result.out << result.err;
+}
+
 }  // namespace
 }  // namespace bandvox::app_test
