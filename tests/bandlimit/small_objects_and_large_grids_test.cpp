@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <string>
 
 namespace bandvox {
@@ -30,6 +32,45 @@ std::size_t peakOfCube(int resolution) {
     const AllocationMeter meter;
     surfaceToDensity(*cube, options);
     return meter.peak();
+}
+
+// A flat wheel with teeth that are much finer than a voxel, and no wider than they are high.
+MeshSource wheel(unsigned teeth, double height) {
+    Mesh mesh;
+    mesh.points = {Vec3d(0), Vec3d(0, 0, height)};
+    for (unsigned i = 0; i < 2 * teeth; ++i) {
+        const double angle = std::numbers::pi * i / teeth;
+        const double radius = i % 2 == 0 ? 1 : 1.3;
+        const Vec3d point(radius * std::cos(angle), radius * std::sin(angle), 0);
+        mesh.points.push_back(point);
+        mesh.points.push_back(point + Vec3d(0, 0, height));
+    }
+    const auto bottom = [teeth](unsigned i) { return 2 + 2 * (i % (2 * teeth)); };
+    for (unsigned i = 0; i < 2 * teeth; ++i) {
+        const unsigned a = bottom(i), b = bottom(i + 1);
+        mesh.triangles.emplace_back(a, b, b + 1);
+        mesh.triangles.emplace_back(a, b + 1, a + 1);
+        if (i % 2 != 0) continue;
+        // A tooth, and its part of the disc.
+        const unsigned c = bottom(i + 2);
+        mesh.triangles.emplace_back(a, c, b);
+        mesh.triangles.emplace_back(a + 1, b + 1, c + 1);
+        mesh.triangles.emplace_back(0, c, a);
+        mesh.triangles.emplace_back(1, a + 1, c + 1);
+    }
+    return MeshSource("wheel", mesh);
+}
+
+// The quadrature errors of its teeth are all of one sign.
+TEST(SmallObjects, TeethFinerThanTheLatticeKeepToTheTolerance) {
+    const MeshSource source = wheel(5000, 0.6);
+    for (const double resolution : {24, 30, 36}) {
+        DensityOptions options;
+        options.voxelSize = 2.6 / resolution;
+        const DensityResult result = surfaceToDensity(source, options);
+        EXPECT_LE(result.metadata.closureError, options.tolerance);
+        EXPECT_NEAR(result.metadata.gridVolume / source.volume(), 1, 1e-4);
+    }
 }
 
 // Twice the resolution is four times the surface; a part does not grow, and borders vary.

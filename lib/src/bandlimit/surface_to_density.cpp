@@ -1,6 +1,7 @@
 #include "bandlimit/density_steps.h"
 #include "bandlimit/fill_columns.h"
 #include "bandlimit/find_overlap.h"
+#include "bandlimit/surface_quadrature.h"
 #include "bandlimit/tile_filter.h"
 #include "bandlimit/tile_plan.h"
 #include "core/words.h"
@@ -21,6 +22,12 @@ namespace {
 
 // How far the integral may be from the volume, in tolerances, before it is worth a word.
 constexpr double kVolumeMargin = 10;
+
+// How often a quadrature that turns out too coarse is refined, and to what part of its tolerance;
+// and the error beyond which it is none of the quadrature's, but of a surface that is not closed.
+constexpr int kMostRefinements = 2;
+constexpr double kRefinement = 1e-2;
+constexpr double kErrorOfHole = 0.02;
 
 // Bytes that the grid will take, from the surface's area.
 double estimateGridMemory(const BoundarySource& source, double voxelSize, const TilePlan& plan) {
@@ -46,6 +53,28 @@ double estimateWorkMemory(const BoundarySource& source, const TilePlan& plan,
     const double tilesOfElement = 1 + 2.0 * (plan.halo + 1) / plan.interior;
     const double bins = sizeof(std::uint32_t) * elements * tilesOfElement * (tilesOfElement + 1);
     return memoryOfColumns(layout) + bins + threadCount() * perThread;
+}
+
+// Fills all columns, so that they are whole numbers away from the surface to within `allowed`.
+//
+// The quadrature takes the errors of a mesh's elements for independent. Of thousands that are alike
+// and share a voxel, as of a comb finer than the lattice, they add up: then it has to be finer.
+FilledColumns fillToTolerance(const BoundarySource& source, TilePlan plan, const TileLayout& layout,
+                              const TileFilter& filter, double allowed, Progress& progress) {
+    for (int attempt = 0;; ++attempt) {
+        FilledColumns columns =
+            fillColumns(source, plan, layout, filter, "band-limiting", progress);
+        const double error = columns.total().closureError;
+        if (error <= allowed) return columns;
+        if (attempt == kMostRefinements || !(error <= kErrorOfHole)) {
+            throw Error(ErrorKind::Result,
+                        source.name() + ": the density is off by " + inShort(error) +
+                            " where it should be a whole number, more than the tolerance of " +
+                            inShort(plan.tolerance));
+        }
+        plan.quadrature =
+            chooseQuadrature(plan.filter, plan.tolerance * std::pow(kRefinement, attempt + 1));
+    }
 }
 
 // What the user should know of shells that overlap.
@@ -83,16 +112,11 @@ DensityResult surfaceToDensity(const BoundarySource& source, const DensityOption
     // Filter the tiles, and check what was measured on the way.
     DensityResult result;
     warnOfFilter(options.filter, options.tolerance, result.warnings);
-    FilledColumns columns = fillColumns(source, plan, layout, filter, "band-limiting", progress);
-    const ColumnStatistics statistics = columns.total();
     // What the lattice cannot hold keeps ringing away from the surface; it was warned of.
-    const double unheld = std::max(0.0, options.filter.atNyquist() - options.tolerance);
-    if (statistics.closureError > options.tolerance + unheld) {
-        throw Error(ErrorKind::Result,
-                    source.name() + ": the density is off by " + inShort(statistics.closureError) +
-                        " where it should be a whole number, more than the tolerance of " +
-                        inShort(options.tolerance));
-    }
+    FilledColumns columns =
+        fillToTolerance(source, plan, layout, filter,
+                        std::max(options.tolerance, options.filter.atNyquist()), progress);
+    const ColumnStatistics statistics = columns.total();
     const bool isOverlapping = findOverlap(source, options, layout, columns.statistics, progress);
     if (isOverlapping) result.warnings.push_back(overlapWarning(statistics));
     const bool clamp = isOverlapping || options.clamp;
