@@ -4,26 +4,13 @@
 #include "commands.h"
 #include "grid_report.h"
 #include "standard_streams.h"
-
-#include <bandvox/source/read_mesh.h>
-#include <bandvox/source/shapes.h>
+#include "vdb_input.h"
 
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
 
 namespace bandvox::app {
-namespace {
-
-void requireVdbToDescribe(const std::string& input) {
-    if (!isShape(input) && extensionOf(input) == ".vdb") return;
-    throw Error(
-        ErrorKind::Input,
-        "cannot tell about '" + input + "': info reads .vdb files" +
-            (isShape(input) || isMeshFile(input) ? "; 'bandvox convert' makes one of it" : ""));
-}
-
-}  // namespace
 
 const CommandTable& infoTable() {
     static const CommandTable table{
@@ -43,7 +30,7 @@ const CommandTable& infoTable() {
 
 void runInfo(const CommandLine& line) {
     const std::string& input = line.positional(0);
-    requireVdbToDescribe(input);
+    requireVdb("tell about", input);
     CommandRun run(line);
 
     openvdb::GridPtrVec grids;

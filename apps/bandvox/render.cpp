@@ -3,13 +3,12 @@
 #include "command_run.h"
 #include "commands.h"
 #include "standard_streams.h"
+#include "vdb_input.h"
 #include "words.h"
 
 #include <bandvox/render/density_to_image.h>
 #include <bandvox/render/image.h>
 #include <bandvox/render/shading.h>
-#include <bandvox/source/read_mesh.h>
-#include <bandvox/source/shapes.h>
 
 #include <nlohmann/json.hpp>
 
@@ -71,18 +70,6 @@ RenderRequest parseRender(const CommandLine& line) {
     options.background = line.vector("background", kColor);
     requireValid(options);
     return request;
-}
-
-void requireVdbToDraw(const std::string& input) {
-    if (!isShape(input) && extensionOf(input) == ".vdb") return;
-    std::string message = "cannot render '" + input + "': expected a .vdb file";
-    if (isShape(input) || isMeshFile(input)) {
-        message += "; convert it first: bandvox convert " + input + " -o " +
-                   (isShape(input) ? input.substr(input.find(':') + 1)
-                                   : std::filesystem::path(input).stem().string()) +
-                   ".vdb";
-    }
-    throw Error(ErrorKind::Input, message);
 }
 
 std::string listed(const openvdb::GridPtrVec& grids) {
@@ -185,7 +172,7 @@ const CommandTable& renderTable() {
 
 void runRender(const CommandLine& line) {
     const RenderRequest request = parseRender(line);
-    requireVdbToDraw(request.input);
+    requireVdb("render", request.input);
     CommandRun run(line);
     AtomicFile output(request.output);
 

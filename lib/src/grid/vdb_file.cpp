@@ -1,19 +1,24 @@
+#include "grid/guarded_reads.h"
+
 #include <bandvox/core/atomic_file.h>
 #include <bandvox/core/error.h>
 #include <bandvox/grid/density_grid.h>
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/Compression.h>
-#include <openvdb/io/Stream.h>
+#include <openvdb/io/GridDescriptor.h>
+#include <openvdb/io/io.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <istream>
-#include <iterator>
 #include <mutex>
+#include <new>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 namespace bandvox {
 
@@ -39,67 +44,80 @@ std::uint32_t compressionFlags(VdbWriteOptions::Compression compression) {
     return openvdb::io::COMPRESS_NONE;
 }
 
-// openvdb::io::File does not notice a full disk. The same archive on a stream of our own does.
+// openvdb::io::File does not notice a full disk, and openvdb::io::Stream does not say which grid
+// it reads. The same archive on streams of our own does.
 class VdbArchive : public openvdb::io::Archive {
   public:
     using openvdb::io::Archive::write;
+
+    openvdb::GridPtrVec read(std::istream& stream, ReadGuard& guard) {
+        readHeader(stream);
+        openvdb::io::StreamMetadata::Ptr metadata(new openvdb::io::StreamMetadata);
+        openvdb::io::setStreamMetadataPtr(stream, metadata, /*transfer=*/false);
+        openvdb::io::setVersion(stream, libraryVersion(), fileVersion());
+        openvdb::io::setDataCompression(stream, compression());
+        guard.watch(stream);
+        openvdb::MetaMap().readMeta(stream);
+
+        openvdb::GridPtrVec grids;
+        NamedGridMap named;
+        std::vector<openvdb::io::GridDescriptor> descriptors;
+        const std::int32_t count = readGridCount(stream);
+        for (std::int32_t i = 0; i < count; ++i) {
+            openvdb::io::GridDescriptor& descriptor = descriptors.emplace_back();
+            grids.push_back(descriptor.read(stream));
+            guard.beginGrid(*grids.back());
+            readGrid(grids.back(), descriptor, stream);
+            guard.endGrid();
+            named[descriptor.uniqueName()] = grids.back();
+        }
+        for (const auto& descriptor : descriptors) connectInstance(descriptor, named);
+        return grids;
+    }
 };
 
 [[noreturn]] void failInput(const std::string& name, const std::string& why) {
     throw Error(ErrorKind::Input, name + ": " + why);
 }
 
-// A buffer for reading that hands out all that is asked for, or nothing. The lengths in a damaged
-// file are any numbers, and OpenVDB reads that many bytes to where there is room for a few: with
-// nothing behind the buffer's end, a length that is too long is an error and no overrun.
 template <typename Buffer>
-class WholeReads : public Buffer {
-  public:
-    explicit WholeReads(std::streamoff size) : mSize(size) {}
-
-  protected:
-    std::streamsize xsgetn(char* to, std::streamsize count) override {
-        if (count > mSize - mPlace) return 0;
-        const std::streamsize read = Buffer::xsgetn(to, count);
-        mPlace += read;
-        return read;
-    }
-    std::streampos seekoff(std::streamoff offset, std::ios::seekdir from,
-                           std::ios::openmode which) override {
-        return moved(Buffer::seekoff(offset, from, which));
-    }
-    std::streampos seekpos(std::streampos place, std::ios::openmode which) override {
-        return moved(Buffer::seekpos(place, which));
-    }
-
-  private:
-    std::streampos moved(std::streampos place) {
-        if (place != std::streampos(-1)) mPlace = place;
-        return place;
-    }
-
-    std::streamoff mSize;
-    std::streamoff mPlace = 0;
-};
-
-openvdb::GridPtrVec readGrids(std::streambuf& buffer, const std::string& name) {
+openvdb::GridPtrVec readGrids(GuardedBuffer<Buffer>& buffer, const std::string& name) {
+    constexpr const char* kDamaged = "it is not a whole VDB file: it ends too early, or is damaged";
     initializeOpenVdb();
     try {
         // A stream that throws stops the reader at the end of a file that was cut short; its own
         // would go on with whatever is in memory.
         std::istream stream(&buffer);
         stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
-        // Without delayed loading, so that damage is found now and not in the middle of the work.
-        openvdb::io::Stream reader(stream, /*delayLoad=*/false);
-        return *reader.getGrids();
+        return VdbArchive().read(stream, buffer.guard());
     } catch (const std::ios::failure&) {
-        failInput(name, "it is not a whole VDB file: it ends too early, or is damaged");
+        failInput(name, kDamaged);
+    } catch (const std::bad_array_new_length&) {
+        failInput(name, kDamaged);
+    } catch (const std::bad_alloc&) {
+        // No memory is enough for what a damaged file may ask for.
+        if (buffer.guard().lastNumberIsTooLarge()) failInput(name, kDamaged);
+        throw;
     } catch (const std::exception& error) {
         // A damaged file can put any number of bytes into OpenVDB's message.
         constexpr std::size_t kLongest = 200;
         failInput(name, "it is not a readable VDB file (" +
                             std::string(error.what()).substr(0, kLongest) + ")");
     }
+}
+
+// All that a stream holds.
+std::string readBytes(std::istream& stream, const std::string& name) {
+    std::string bytes;
+    std::array<char, 65536> part;
+    do {
+        stream.read(part.data(), part.size());
+        bytes.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+    } while (stream);
+    if (stream.bad()) {
+        failInput(name, std::string("it cannot be read: ") + std::strerror(errno));
+    }
+    return bytes;
 }
 
 }  // namespace
@@ -150,7 +168,7 @@ openvdb::GridPtrVec readVdb(const fs::path& path) {
     }
     const auto size = static_cast<std::streamoff>(fs::file_size(path, ignored));
     if (size == 0) failInput(path.string(), "the file is empty");
-    WholeReads<std::filebuf> buffer(size);
+    GuardedBuffer<std::filebuf> buffer(size);
     if (!buffer.open(path, std::ios::in | std::ios::binary)) {
         failInput(path.string(), "it cannot be opened for reading");
     }
@@ -158,10 +176,10 @@ openvdb::GridPtrVec readVdb(const fs::path& path) {
 }
 
 openvdb::GridPtrVec readVdb(std::istream& stream, const std::string& name) {
-    std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    std::string bytes = readBytes(stream, name);
     if (bytes.empty()) failInput(name, "it is empty");
     const auto size = static_cast<std::streamoff>(bytes.size());
-    WholeReads<std::stringbuf> buffer(size);
+    GuardedBuffer<std::stringbuf> buffer(size);
     buffer.str(std::move(bytes));
     return readGrids(buffer, name);
 }

@@ -1,5 +1,8 @@
 #include "source/file_integrity.h"
 
+#include "source/little_endian.h"
+#include "source/nesting_depth.h"
+
 #include <bandvox/core/error.h>
 
 #include <cerrno>
@@ -7,17 +10,6 @@
 #include <fstream>
 
 namespace bandvox {
-namespace {
-
-std::uint32_t littleEndian32(const std::string& bytes, std::size_t offset) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-        value |= std::uint32_t(static_cast<unsigned char>(bytes[offset + i])) << (8 * i);
-    }
-    return value;
-}
-
-}  // namespace
 
 void FileContents::fail(const std::string& what) const {
     throw Error(ErrorKind::Input, "\"" + path.string() + "\" " + what);
@@ -56,15 +48,18 @@ void checkGlb(const FileContents& file) {
     }
 }
 
-std::vector<std::string> checkMeshFile(const std::filesystem::path& path,
-                                       std::string_view extension) {
-    std::vector<std::string> warnings;
-    if (extension == ".obj") checkObj(readFile(path), warnings);
-    if (extension == ".off") checkOff(readFile(path), warnings);
-    if (extension == ".ply") checkPly(readFile(path), warnings);
-    if (extension == ".stl") checkStl(readFile(path));
-    if (extension == ".glb") checkGlb(readFile(path));
-    return warnings;
+MeshFileFacts checkMeshFile(const std::filesystem::path& path, std::string_view extension) {
+    MeshFileFacts facts;
+    const FileContents file = readFile(path);
+    if (extension == ".obj") checkObj(file, facts.warnings);
+    if (extension == ".off") checkOff(file, facts.warnings);
+    if (extension == ".ply") checkPly(file, facts.warnings);
+    if (extension == ".stl") checkStl(file);
+    if (extension == ".glb") checkGlb(file);
+    if (extension == ".glb" || extension == ".gltf") facts.triangles = checkGltf(file);
+    if (extension == ".dae") requireShallow(file, xmlDepth(file.bytes));
+    if (extension == ".fbx") requireShallow(file, fbxDepth(file.bytes));
+    return facts;
 }
 
 }  // namespace bandvox

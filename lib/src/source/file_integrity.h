@@ -19,13 +19,19 @@ struct FileContents {
 /// Reads a whole file. Throws Error(ErrorKind::Input) if it cannot be read.
 FileContents readFile(const std::filesystem::path& path);
 
-/// Checks that a mesh file is complete and that its faces refer to points it has, as far as the
-/// importer does not: that one takes several kinds of damaged file for good.
+/// What is known of a mesh file before the importer has read it.
+struct MeshFileFacts {
+    std::vector<std::string> warnings;
+    std::size_t triangles = 0;  ///< of a glTF file; the importer silently leaves out those with
+                                ///< bad indices
+};
+
+/// Checks that a mesh file is complete, that its faces refer to points it has, and that it is not
+/// nested too deeply, as far as the importer does not: that one takes several kinds of damaged
+/// file for good, and others crash it.
 ///
-/// `extension` is in lower case with its dot; formats without a check pass. Returns warnings.
-/// Throws Error(ErrorKind::Input).
-std::vector<std::string> checkMeshFile(const std::filesystem::path& path,
-                                       std::string_view extension);
+/// `extension` is in lower case with its dot. Throws Error(ErrorKind::Input).
+MeshFileFacts checkMeshFile(const std::filesystem::path& path, std::string_view extension);
 
 void checkObj(const FileContents& file, std::vector<std::string>& warnings);
 void checkOff(const FileContents& file, std::vector<std::string>& warnings);
@@ -33,8 +39,8 @@ void checkPly(const FileContents& file, std::vector<std::string>& warnings);
 void checkStl(const FileContents& file);
 void checkGlb(const FileContents& file);
 
-/// How many triangles a glTF file (text or binary) says that it has, in all its meshes; 0 if it
-/// is not valid JSON of version 2. The importer silently leaves out those with bad indices.
-std::size_t countGltfTriangles(const FileContents& file);
+/// Checks the JSON of a glTF file, text or binary. Returns how many triangles it says that it has,
+/// in all its meshes; 0 if it is not of version 2.
+std::size_t checkGltf(const FileContents& file);
 
 }  // namespace bandvox

@@ -1,3 +1,4 @@
+#include "source/little_endian.h"
 #include "source/text_lines.h"
 
 #include <algorithm>
@@ -136,12 +137,9 @@ class Values {
 
     std::optional<std::int64_t> readBytes(const Type& type) {
         if (mFile.bytes.size() - mPosition < type.bytes) return std::nullopt;
-        std::uint64_t bits = 0;
-        for (std::size_t i = 0; i < type.bytes; ++i) {
-            const std::size_t place = mEncoding == Encoding::LittleEndian ? i : type.bytes - 1 - i;
-            bits |= std::uint64_t(static_cast<unsigned char>(mFile.bytes[mPosition + i]))
-                    << (8 * place);
-        }
+        const std::uint64_t bits = unsignedAt(
+            mFile.bytes, mPosition, type.bytes,
+            mEncoding == Encoding::LittleEndian ? std::endian::little : std::endian::big);
         mPosition += type.bytes;
         if (type.isReal) return 0;
         const bool negative = type.isSigned && (bits >> (8 * type.bytes - 1)) != 0;

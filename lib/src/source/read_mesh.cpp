@@ -106,9 +106,8 @@ void checkScene(const aiScene& scene, const fs::path& path, std::vector<std::str
     }
 }
 
-/// Complains if the importer has left out triangles of a glTF file.
-void checkGltfComplete(const aiScene& scene, const fs::path& path) {
-    const std::size_t expected = countGltfTriangles(readFile(path));
+/// Complains if the importer has left out some of the triangles that a glTF file says it has.
+void checkComplete(const aiScene& scene, std::size_t expected, const fs::path& path) {
     std::size_t found = 0;
     for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
         const aiMesh& mesh = *scene.mMeshes[m];
@@ -212,7 +211,8 @@ MeshFile readMesh(const fs::path& path, Progress& progress) {
     const std::string extension = lowerExtension(path);
     const ProgressStage stage(progress, "read mesh", kSteps);
     MeshFile file;
-    file.warnings = checkMeshFile(path, extension);
+    MeshFileFacts facts = checkMeshFile(path, extension);
+    file.warnings = std::move(facts.warnings);
     progress.throwIfInterrupted();
 
     Assimp::Importer importer;
@@ -225,7 +225,7 @@ MeshFile readMesh(const fs::path& path, Progress& progress) {
     progress.throwIfInterrupted();
     if (scene == nullptr) fail(path, std::string("is malformed: ") + importer.GetErrorString());
     checkScene(*scene, path, file.warnings);
-    if (extension == ".gltf" || extension == ".glb") checkGltfComplete(*scene, path);
+    checkComplete(*scene, facts.triangles, path);
     scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
     progress.throwIfInterrupted();
     if (scene == nullptr || scene->mRootNode == nullptr) {

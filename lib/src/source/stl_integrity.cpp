@@ -1,3 +1,4 @@
+#include "source/little_endian.h"
 #include "source/text_lines.h"
 
 namespace bandvox {
@@ -8,11 +9,7 @@ constexpr std::size_t kBinaryFacet = 50;
 
 /// Size that a binary file with this header has.
 std::size_t binarySize(const std::string& bytes) {
-    std::size_t facets = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-        facets |= std::size_t(static_cast<unsigned char>(bytes[80 + i])) << (8 * i);
-    }
-    return kBinaryHeader + kBinaryFacet * facets;
+    return kBinaryHeader + kBinaryFacet * std::size_t(littleEndian32(bytes, 80));
 }
 
 void checkText(const FileContents& file) {
