@@ -30,7 +30,8 @@ constexpr int kMostOversample = 64;
 struct ConvertRequest {
     std::string input;
     std::filesystem::path output;
-    bool isSampled = false;     ///< by the sampled route
+    bool isSampled = false;  ///< by the sampled route
+    bool isToleranceAsked = false;
     FieldDensityOptions field;  ///< `density` of it holds for the exact route, too
     VdbWriteOptions write;
 };
@@ -63,6 +64,7 @@ void readRoute(const CommandLine& line, ConvertRequest& request) {
         line.number("tolerance", {.low = 1e-6, .high = 0.05},
                     request.isSampled ? request.field.samplingTolerance : density.tolerance);
     if (request.isSampled) request.field.samplingTolerance = tolerance;
+    request.isToleranceAsked = line.has("tolerance");
     density.tolerance = request.isSampled ? std::min(density.tolerance, tolerance) : tolerance;
 }
 
@@ -178,6 +180,17 @@ DensityResult toDensity(CommandRun& run, const ConvertRequest& request) {
     return result;
 }
 
+// The default tolerance of the sampled route warns; one that was asked for has to be kept.
+void requireTolerance(const ConvertRequest& request, const DensityMetadata& metadata) {
+    const double asked = request.field.samplingTolerance;
+    if (!request.isSampled || !request.isToleranceAsked || !(metadata.samplingError > asked))
+        return;
+    throw Error(ErrorKind::Result,
+                "the sampling error of " + formatNumber(metadata.samplingError, 2) +
+                    " is above the tolerance asked for, " + formatNumber(asked, 2) +
+                    "; take more samples (--oversample), or the exact route");
+}
+
 }  // namespace
 
 const CommandTable& convertTable() {
@@ -246,6 +259,7 @@ void runConvert(const CommandLine& line) {
     AtomicFile output(request.output);
 
     DensityResult result = toDensity(run, request);
+    requireTolerance(request, result.metadata);
     if (request.write.half) {
         // What is stated has to hold for what is in the file.
         result.metadata.storageError = roundToHalf(*result.grid);

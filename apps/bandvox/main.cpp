@@ -47,7 +47,7 @@ void printHelp(const std::vector<std::string>& commandNames) {
         throw Error(ErrorKind::Usage, "'help' takes one command; found '" + commandNames[1] +
                                           "' after '" + commandNames[0] + "'");
     }
-    if (commandNames.empty()) {
+    if (commandNames.empty() || commandNames.front() == "help") {
         writeResult(overviewText(commandTables()));
     } else {
         writeResult(helpText(findCommand(commandNames.front()).table()));

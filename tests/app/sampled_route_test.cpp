@@ -23,18 +23,27 @@ TEST(SampledRoute, PlainRunDoesNotWarn) {
     EXPECT_NE(result.err.find("tolerance 0.05"), std::string::npos) << result.err;
 }
 
-TEST(SampledRoute, ErrorAboveTheToleranceIsAWarning) {
+TEST(SampledRoute, ErrorAboveTheDefaultToleranceIsAWarning) {
     const TemporaryFolder folder;
-    const RunResult plain = convertCube(folder, {"--oversample", "4", "--tolerance", "0.012"});
+    const RunResult plain = convertCube(folder, {"--oversample", "2"});
     EXPECT_EQ(plain.status, 0) << plain.err;
     EXPECT_EQ(countLines(plain.err, "bandvox: warning: the sampling error"), 1) << plain.err;
-    EXPECT_NE(plain.err.find("tolerance of 0.012;"), std::string::npos) << plain.err;
+    EXPECT_NE(plain.err.find("tolerance of 0.05;"), std::string::npos) << plain.err;
     std::filesystem::remove(folder / "a.vdb");
 
-    const RunResult strict =
-        convertCube(folder, {"--oversample", "4", "--tolerance", "0.012", "--strict"});
+    const RunResult strict = convertCube(folder, {"--oversample", "2", "--strict"});
     EXPECT_EQ(strict.status, 4) << strict.err;
     EXPECT_EQ(folder.contents(), Names{});
+}
+
+TEST(SampledRoute, ToleranceThatIsAskedForIsKeptOrNothingWritten) {
+    const TemporaryFolder folder;
+    const RunResult failed = convertCube(folder, {"--oversample", "4", "--tolerance", "0.012"});
+    EXPECT_EQ(failed.status, 4) << failed.err;
+    EXPECT_NE(failed.err.find("above the tolerance asked for, 0.012"), std::string::npos)
+        << failed.err;
+    EXPECT_EQ(folder.contents(), Names{});
+    EXPECT_EQ(convertCube(folder, {"--oversample", "16", "--tolerance", "0.04"}).status, 0);
 }
 
 TEST(SampledRoute, ErrorThatIsNotKnownIsAWarning) {

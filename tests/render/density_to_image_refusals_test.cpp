@@ -40,7 +40,7 @@ TEST(DensityToImage, RefusesWhatIsNoDensity) {
     auto levelSet = ballGrid();
     levelSet->setGridClass(openvdb::GRID_LEVEL_SET);
     EXPECT_EQ(kindOfFailure(levelSet, options, &message), ErrorKind::Input);
-    EXPECT_NE(message.find("bandvox convert"), std::string::npos) << message;
+    EXPECT_NE(message.find("sdfToFogVolume"), std::string::npos) << message;
     EXPECT_EQ(kindOfFailure(openvdb::FloatGrid::create(0), options), ErrorKind::Input);
     EXPECT_EQ(kindOfFailure(nullptr, options), ErrorKind::Input);
     auto bent = ballGrid();

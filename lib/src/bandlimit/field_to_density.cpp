@@ -136,8 +136,8 @@ DensityResult fieldToDensity(const FieldSource& source, const FieldDensityOption
 
     result.fieldSamples = statistics.samples;
     result.tiles = statistics.tiles;
-    result.minimum = statistics.minimum;
-    result.maximum = statistics.maximum;
+    result.minimum = density.clamp ? std::max(statistics.minimum, 0.0) : statistics.minimum;
+    result.maximum = density.clamp ? std::min(statistics.maximum, 1.0) : statistics.maximum;
     result.spreadSeconds = statistics.sampleSeconds;
     result.transformSeconds = statistics.transformSeconds;
     return result;

@@ -20,8 +20,9 @@ namespace bandvox {
 
 namespace {
 
-// How far the integral may be from the volume, in tolerances, before it is worth a word.
-constexpr double kVolumeMargin = 10;
+// How far the integral may be from the volume, relative, before it is worth a word, if the
+// tolerance is no more than that.
+constexpr double kVolumeError = 1e-4;
 
 // How often a quadrature that turns out too coarse is refined, and to what part of its tolerance;
 // and the error beyond which it is none of the quadrature's, but of a surface that is not closed.
@@ -87,11 +88,14 @@ std::string overlapWarning(const ColumnStatistics& statistics) {
 // What lies below the storage threshold is lost, and of an object of few voxels that is much.
 void warnOfVolume(const DensityMetadata& metadata, std::vector<std::string>& warnings) {
     const double difference = std::abs(metadata.gridVolume / metadata.sourceVolume - 1);
-    if (difference <= kVolumeMargin * metadata.tolerance) return;
+    if (difference <= std::max(kVolumeError, metadata.tolerance)) return;
+    const bool isHeld =
+        ExponentialFilter{metadata.order, metadata.cutoff}.atNyquist() <= metadata.tolerance;
     warnings.push_back("the integral of the density differs from the volume by " +
                        inShort(100 * difference) +
-                       " %, since the object is small in voxels; use more of them, or a smaller "
-                       "tolerance");
+                       (isHeld ? " %, since the object is small in voxels; use more of them, or a "
+                                 "smaller tolerance"
+                               : " %, since the lattice cannot hold the filter"));
 }
 
 }  // namespace
@@ -134,8 +138,8 @@ DensityResult surfaceToDensity(const BoundarySource& source, const DensityOption
     result.surfaceSamples = statistics.samples;
     result.tiles = statistics.tiles;
     result.kernelWidth = plan.kernel.width();
-    result.minimum = statistics.minimum;
-    result.maximum = statistics.maximum;
+    result.minimum = clamp ? std::max(statistics.minimum, 0.0) : statistics.minimum;
+    result.maximum = clamp ? std::min(statistics.maximum, 1.0) : statistics.maximum;
     result.spreadSeconds = statistics.spreadSeconds;
     result.transformSeconds = statistics.transformSeconds;
     return result;

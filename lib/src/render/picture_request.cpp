@@ -55,7 +55,7 @@ void requireDensity(const openvdb::FloatGrid& grid) {
         throw Error(ErrorKind::Input,
                     name +
                         "is a level set (signed distances); expected a density: convert it "
-                        "first, with `bandvox convert` or OpenVDB's sdfToFogVolume");
+                        "first, with OpenVDB's sdfToFogVolume");
     }
     if (!grid.transform().isLinear()) {
         throw Error(ErrorKind::Input, name + "has a transform of type " +

@@ -54,6 +54,11 @@ std::int64_t readCorner(std::string_view word, const TextLines& lines, Reference
 }  // namespace
 
 void checkObj(const FileContents& file, std::vector<std::string>& warnings) {
+    if (file.bytes.starts_with("\xEF\xBB\xBF")) {
+        file.fail(
+            "begins with a byte-order mark, behind which the first line would be lost; "
+            "expected plain text");
+    }
     Reference references[3] = {{"point"}, {"texture coordinate"}, {"normal"}};
     PointUse use;
     std::size_t faces = 0;

@@ -33,7 +33,7 @@ struct DensityResult {
     int tileSide = 0;                   ///< voxels, halo included
     int halo = 0;                       ///< voxels on each side of a tile
     int kernelWidth = 0;                ///< exact route: of the spreading kernel, voxels
-    double minimum = 0, maximum = 0;    ///< of the density over all voxels computed
+    double minimum = 0, maximum = 0;    ///< of the density over all voxels, limited if it is
     double spreadSeconds = 0;           ///< processor time of all threads before the transforms
     double transformSeconds = 0;        ///< the same in transforms
     std::vector<std::string> warnings;  ///< in words, for the user
