@@ -6,6 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <cstring>
+#include <utility>
+
 namespace bandvox::app_test {
 namespace {
 
@@ -93,6 +97,30 @@ TEST_F(BadInput, TruncatedMesh) {
     expectBadMesh("text.stl", cubeStlAscii().substr(0, cubeStlAscii().size() / 2), 3);
     expectBadMesh("cut.glb", cubeGlb().substr(0, cubeGlb().size() - 40), 3);
     expectBadMesh("head.glb", cubeGlb().substr(0, 30), 3);
+}
+
+TEST_F(BadInput, TruncatedSceneAnywhere) {
+    const std::string gltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}]})";
+    const std::pair<const char*, std::string> files[] = {{"whole.fbx", exportedCube("fbx")},
+                                                         {"text.fbx", exportedCube("fbxa")},
+                                                         {"whole.dae", exportedCube("collada")},
+                                                         {"whole.gltf", gltf}};
+    for (const auto& [name, content] : files) {
+        for (const std::size_t part : {1, 5, 9}) {
+            expectBadMesh(name, content.substr(0, content.size() * part / 10), 3);
+        }
+    }
+}
+
+TEST_F(BadInput, NestedTooDeep) {
+    const auto repeated = [](const std::string& text) {
+        std::string all;
+        for (int i = 0; i < 200000; ++i) all += text;
+        return all;
+    };
+    expectBadMesh("deep.gltf", R"({"asset":{"version":"2.0"},"x":)" + repeated("["), 3, {"nested"});
+    expectBadMesh("deep.dae", repeated("<node>"), 3, {"nested"});
+    expectBadMesh("deep.fbx", repeated("A: {"), 3, {"nested"});
 }
 
 TEST_F(BadInput, Rubbish) {
@@ -236,6 +264,28 @@ TEST_F(BadInput, DamagedVdb) {
     expectFailure({"info", "stdin.vdb"}, 3, {"standard input"});
     expectFailure({"info", "stdin.vdb"}, 3, {"standard input"},
                   {.standardInput = (mFolder / "cut.vdb").string()});
+}
+
+TEST_F(BadInput, VdbWithALengthThatIsAnyNumber) {
+    writeSeveralGrids(mFolder / "good.vdb");
+    const std::string good = readText(mFolder / "good.vdb") + std::string(100000, 'x');
+    // In the place of each number that could be the length of a chunk of a voxel or two, the number
+    // of bytes that are left, negative: so OpenVDB writes the length of a chunk that it has not
+    // compressed.
+    int refused = 0;
+    for (std::size_t place = 0; place < good.size() - 100000; ++place) {
+        std::int64_t length = 0;
+        std::memcpy(&length, good.data() + place, sizeof length);
+        if (length <= 16 || length > 40) continue;
+        length = -static_cast<std::int64_t>(good.size() - place - 8);
+        std::string bad = good;
+        std::memcpy(bad.data() + place, &length, sizeof length);
+        writeText(mFolder / "bad.vdb", bad);
+        const RunResult result = runBandvox({"info", "bad.vdb"}, {.folder = mFolder.path()});
+        EXPECT_TRUE(result.status == 0 || result.status == 3) << place << ": " << result.status;
+        refused += result.status == 3 ? 1 : 0;
+    }
+    EXPECT_GE(refused, 3);
 }
 
 TEST_F(BadInput, GridThatIsNotThere) {

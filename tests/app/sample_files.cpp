@@ -2,12 +2,16 @@
 
 #include <bandvox/grid/density_grid.h>
 
+#include <assimp/Exporter.hpp>
+#include <assimp/Importer.hpp>
+#include <assimp/cexport.h>
 #include <openvdb/openvdb.h>
 
 #include <array>
 #include <cstdint>
 #include <cstring>
 #include <sstream>
+#include <stdexcept>
 #include <vector>
 
 namespace bandvox::app_test {
@@ -128,6 +132,16 @@ std::string cubeGlb() {
     append(bytes, static_cast<std::uint32_t>(buffer.size()));
     bytes += std::string("BIN\0", 4) + buffer;
     return bytes;
+}
+
+std::string exportedCube(const std::string& format) {
+    const std::string text = cubeObj();
+    Assimp::Importer importer;
+    const aiScene* scene = importer.ReadFileFromMemory(text.data(), text.size(), 0, "obj");
+    Assimp::Exporter exporter;
+    const aiExportDataBlob* blob = scene ? exporter.ExportToBlob(scene, format) : nullptr;
+    if (blob == nullptr) throw std::runtime_error("cannot export to " + format);
+    return {static_cast<const char*>(blob->data), blob->size};
 }
 
 void writeSeveralGrids(const std::filesystem::path& path) {

@@ -15,6 +15,9 @@ std::string cubeStlAscii();
 std::string cubeStlBinary();
 /// The same as a glTF binary.
 std::string cubeGlb();
+/// The same as Assimp exports it to a format of this name in its own list, such as "collada"; one
+/// that it writes to a single file.
+std::string exportedCube(const std::string& format);
 
 /// Writes a .vdb with a float grid "density", a float grid "heat", a vector grid "vel" with one
 /// voxel each, and an empty bool grid "mask".
