@@ -169,7 +169,7 @@ void ReadGuard::followBesideMask(std::span<const char> bytes) {
         return;
     }
     using namespace openvdb::io;
-    const int kind = static_cast<signed char>(bytes[0]);
+    const unsigned kind = static_cast<unsigned char>(bytes[0]);
     const bool activeOnly =
         (getDataCompression(*mStream) & COMPRESS_ACTIVE_MASK) != 0 && kind != NO_MASK_AND_ALL_VALS;
     mValues = activeOnly ? mActive : 8 * std::uint64_t(mMaskBytes);
