@@ -1,13 +1,12 @@
 #include "bandlimit/closed_form_density.h"
+#include "source/test_meshes.h"
 
 #include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/source/mesh_source.h>
-#include <bandvox/source/shapes.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,11 +32,7 @@ bool isOverlapSaid(const DensityResult& result) {
 }
 
 Mesh together(Mesh a, const Mesh& b) {
-    const auto offset = static_cast<std::uint32_t>(a.points.size());
-    a.points.insert(a.points.end(), b.points.begin(), b.points.end());
-    for (const openvdb::Vec3I& t : b.triangles) {
-        a.triangles.emplace_back(t[0] + offset, t[1] + offset, t[2] + offset);
-    }
+    test::append(a, b);
     return a;
 }
 
@@ -79,9 +74,8 @@ TEST(FindOverlap, ThinOverlapsAreFoundUnderEveryFilter) {
 
 // A thin part that is inside out in a solid that is not.
 TEST(FindOverlap, ThinPartsInsideOutAreFoundUnderEveryFilter) {
-    Mesh plate = TurnedBox{Vec3d(1, 8, 8), Vec3d(40, 0, 0), someRotation()}.mesh(1);
-    for (openvdb::Vec3I& triangle : plate.triangles) std::swap(triangle[1], triangle[2]);
-    const MeshSource source("plate", together(ballMesh(12, Vec3d(0), 4), plate));
+    const Mesh plate = TurnedBox{Vec3d(1, 8, 8), Vec3d(40, 0, 0), someRotation()}.mesh(1);
+    const MeshSource source("plate", together(ballMesh(12, Vec3d(0), 4), test::reversed(plate)));
     for (const ExponentialFilter& filter : kFilters) {
         EXPECT_TRUE(isOverlapSaid(densityOf(source, filter))) << filter.order;
     }

@@ -1,4 +1,5 @@
 #include "bandlimit/closed_form_density.h"
+#include "source/test_meshes.h"
 
 #include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/core/error.h>
@@ -182,22 +183,13 @@ TEST(SurfaceToDensity, WholeVoxelShiftShiftsEveryBit) {
 }
 
 Mesh operator+(Mesh a, const Mesh& b) {
-    const auto offset = static_cast<std::uint32_t>(a.points.size());
-    a.points.insert(a.points.end(), b.points.begin(), b.points.end());
-    for (const openvdb::Vec3I& t : b.triangles) {
-        a.triangles.emplace_back(t[0] + offset, t[1] + offset, t[2] + offset);
-    }
+    test::append(a, b);
     return a;
-}
-
-Mesh insideOut(Mesh mesh) {
-    for (openvdb::Vec3I& t : mesh.triangles) std::swap(t[1], t[2]);
-    return mesh;
 }
 
 TEST(SurfaceToDensity, IntegralIsTheVolume) {
     const Mesh ball = ballMesh(20, Vec3d(0.3), 4);
-    const Mesh cavity = insideOut(ballMesh(11, Vec3d(2.1, 0.3, -0.8), 3));
+    const Mesh cavity = test::reversed(ballMesh(11, Vec3d(2.1, 0.3, -0.8), 3));
     const Mesh box = boxOf(Vec3d(9, 14, 5)).mesh(1);
     Mesh farBox = box;
     for (Vec3d& point : farBox.points) point += Vec3d(44, 3, -7);
@@ -209,8 +201,8 @@ TEST(SurfaceToDensity, IntegralIsTheVolume) {
         {"ball", ball, MeshSource("", ball).volume()},
         {"cavity", ball + cavity, MeshSource("", ball + cavity).volume()},
         {"two pieces", ball + farBox, MeshSource("", ball).volume() + 8 * 9 * 14 * 5},
-        {"inside out", insideOut(ball + cavity), MeshSource("", ball + cavity).volume()},
-        {"one piece inside out", ball + insideOut(farBox),
+        {"inside out", test::reversed(ball + cavity), MeshSource("", ball + cavity).volume()},
+        {"one piece inside out", ball + test::reversed(farBox),
          MeshSource("", ball).volume() + 8 * 9 * 14 * 5},
     };
     for (const auto& [name, mesh, volume] : cases) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <random>
 #include <string>
@@ -125,6 +127,23 @@ TEST_F(DensityGridFile, HalfIsHalfAndLeavesTheGridAlone) {
     const Coord place(3, 6, -3);
     EXPECT_NE(read->tree().getValue(place), grid->tree().getValue(place));
     EXPECT_NEAR(read->tree().getValue(place), grid->tree().getValue(place), 1e-4);
+}
+
+TEST_F(DensityGridFile, RoundToHalfIsWhatTheFileGivesBack) {
+    const openvdb::FloatGrid::Ptr grid = sampleGrid();
+    writeVdb(path, {grid}, {.half = true});
+    const auto read = openvdb::gridPtrCast<openvdb::FloatGrid>(readVdb(path).at(0));
+    const openvdb::FloatGrid::Ptr rounded = grid->deepCopy();
+    const double stated = roundToHalf(*rounded);
+    double largest = 0;
+    for (auto value = grid->cbeginValueOn(); value; ++value) {
+        const float stored = read->tree().getValue(value.getCoord());
+        EXPECT_EQ(rounded->tree().getValue(value.getCoord()), stored) << value.getCoord();
+        largest = std::max<double>(largest, std::abs(stored - *value));
+    }
+    EXPECT_GT(stated, 0);
+    EXPECT_DOUBLE_EQ(stated, largest);
+    EXPECT_EQ(roundToHalf(*rounded), 0);
 }
 
 TEST_F(DensityGridFile, PlaceThatCannotBeWrittenIsAnError) {

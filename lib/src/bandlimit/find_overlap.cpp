@@ -22,7 +22,7 @@ bool isBeyond(const ColumnStatistics& column, double limit) {
     return column.maximum > 1 + limit || column.minimum < -limit;
 }
 
-// Whether columns of `layout` share voxels, along one axis, with those of another.
+// The columns of `layout` that share voxels, along one axis, with a column of another.
 TileRange columnsOver(const TileLayout& layout, int axis, const TileLayout& other, int column) {
     const int low = other.origin[axis] + column * other.interior;
     return tilesTouching(layout, 0, axis, low, low + other.interior - 1);
