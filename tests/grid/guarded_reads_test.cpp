@@ -120,6 +120,7 @@ TEST(GuardedReads, LetGridsOfAnyTypePass) {
 TEST(GuardedReads, LetPointsPass) {
     using openvdb::Vec3R;
     namespace points = openvdb::points;
+    openvdb::initialize();  // points are made here before anything is written or read
     const auto transform = openvdb::math::Transform::createLinearTransform(1.0);
     const auto indexOf = [&](const std::vector<Vec3R>& places) {
         return openvdb::tools::createPointIndexGrid<openvdb::tools::PointIndexGrid>(
