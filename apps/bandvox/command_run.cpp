@@ -137,8 +137,9 @@ void CommandRun::writeOutput(AtomicFile& output, const std::function<void(Atomic
     mProgress.throwIfInterrupted();
     if (mStatistics) mStatistics->commit();
     output.commit();
-    say("wrote    " + output.target().string() + size + ", after " + formatNumber(seconds(), 3) +
-        " s");
+    const bool isStandardOutput = output.target() == "/dev/stdout";
+    say("wrote    " + (isStandardOutput ? "the standard output" : output.target().string()) + size +
+        ", after " + formatNumber(seconds(), 3) + " s");
 }
 
 void CommandRun::finish() {
@@ -205,9 +206,10 @@ void requireExtension(const fs::path& path, const std::vector<std::string>& exte
     const bool stream =
         fs::is_character_file(status) || fs::is_fifo(status) || path.string().starts_with("/dev/");
     if (stream && extensions.size() == 1) return;
-    throw Error(ErrorKind::Usage, "option --output is '" + path.string() +
-                                      "'; expected a name that ends in " +
-                                      joined(extensions, " or "));
+    const bool isBare = path.filename().string().starts_with('.') && !path.has_extension();
+    throw Error(ErrorKind::Usage,
+                "option --output is '" + path.string() + "'; expected a name that ends in " +
+                    joined(extensions, " or ") + (isBare ? " and has something before it" : ""));
 }
 
 }  // namespace bandvox::app

@@ -73,12 +73,12 @@ RenderRequest parseRender(const CommandLine& line) {
 }
 
 std::string listed(const openvdb::GridPtrVec& grids) {
-    if (grids.empty()) return "none";
+    if (grids.empty()) return "no grids";
     std::vector<std::string> names;
     for (const auto& grid : grids) {
         names.push_back("'" + grid->getName() + "' (" + grid->valueType() + ")");
     }
-    return joined(names, ", ");
+    return "the grids " + joined(names, ", ");
 }
 
 /// The grid that is asked for; without a name the first of floats named density, else the only
@@ -98,7 +98,7 @@ openvdb::FloatGrid::Ptr chooseGrid(const openvdb::GridPtrVec& grids,
     }
     if (!name && floats == 1) return only;
     throw Error(ErrorKind::Input,
-                "'" + file + "' has the grids " + listed(grids) + "; expected " +
+                "'" + file + "' has " + listed(grids) + "; expected " +
                     (name ? "a float grid '" + *name + "'"
                           : "a float grid 'density', or one float grid only (--grid names one)"));
 }
@@ -195,7 +195,8 @@ void runRender(const CommandLine& line) {
     run.count("rays", result.rays);
     run.count("hits", result.hits);
 
-    run.writeOutput(output, [&](AtomicFile& file) { writeImage(file, result.image); });
+    run.writeOutput(output,
+                    [&](AtomicFile& file) { writeImage(file, result.image, run.progress()); });
 }
 
 }  // namespace bandvox::app

@@ -20,6 +20,9 @@
 namespace bandvox::app {
 namespace {
 
+// How far the volume of the voxels may be from the solid's, relative, before it is worth a word.
+constexpr double kVolumeError = 0.05;
+
 struct VoxelizeRequest {
     std::string input;
     std::filesystem::path output;
@@ -55,7 +58,8 @@ VoxelizedSolid voxelize(CommandRun& run, const VoxelizeRequest& request) {
     return {meshToVoxels(*mesh.source, request.voxels, run.progress()), mesh.source->volume()};
 }
 
-void sayResult(CommandRun& run, const VoxelizedSolid& solid) {
+/// Says what was made; warns if the voxels are too few to tell the solid's size.
+void sayResult(CommandRun& run, VoxelizedSolid& solid) {
     const openvdb::FloatGrid& grid = *solid.result.grid;
     const openvdb::Coord size = grid.evalActiveVoxelBoundingBox().dim();
     run.say("grid     " + std::to_string(size.x()) + " x " + std::to_string(size.y()) + " x " +
@@ -68,6 +72,12 @@ void sayResult(CommandRun& run, const VoxelizedSolid& solid) {
     run.say("volume   source " + formatNumber(solid.sourceVolume, 8) + ", grid " +
             formatNumber(volume, 8) + ", relative difference " + formatNumber(difference, 2));
     run.count("source_volume", solid.sourceVolume);
+    if (difference > kVolumeError) {
+        solid.result.warnings.push_back(
+            "the voxels hold " + formatNumber(100 * difference, 2) + " % " +
+            (volume < solid.sourceVolume ? "less" : "more") +
+            " than the solid, which is small in voxels; use more of them");
+    }
 }
 
 }  // namespace
@@ -101,7 +111,7 @@ void runVoxelize(const CommandLine& line) {
     CommandRun run(line);
     AtomicFile output(request.output);
 
-    const VoxelizedSolid solid = voxelize(run, request);
+    VoxelizedSolid solid = voxelize(run, request);
     sayResult(run, solid);
     run.warn(solid.result.warnings, ErrorKind::Result);
 

@@ -203,6 +203,15 @@ TEST_F(BadInput, FilesThatAreTheSame) {
     expectFailure({"convert", "cube.obj", "-o", "stdin.vdb"}, 2, {"stdin.vdb"});
 }
 
+TEST_F(BadInput, NamesOfNothingButAnExtension) {
+    expectFailure({"convert", "cube.obj", "-o", ".vdb"}, 2, {"'.vdb'", "something before it"});
+}
+
+TEST_F(BadInput, ZerosAreQuoted) {
+    writeText(mFolder / "zeros.off", std::string(20, '\0'));
+    expectFailure({"convert", "zeros.off", "-o", "z.vdb"}, 3, {"line 1 begins with \"???", "OFF"});
+}
+
 TEST_F(BadInput, StatisticsThatCannotBeWritten) {
     // The result is whole, but there would be no record of it.
     std::filesystem::create_symlink("/dev/full", mFolder / "full");

@@ -73,6 +73,15 @@ TEST_F(Voxelize, TakesShapesByTheirFormula) {
     EXPECT_NEAR(densityIntegral(*grid), 4.18879, 0.05);
 }
 
+TEST_F(Voxelize, TooFewVoxelsAreWorthAWarning) {
+    const RunResult few = voxelize({"shape:sphere", "-o", "s.vdb", "-r", "1"});
+    EXPECT_EQ(few.status, 0);
+    EXPECT_NE(few.err.find("warning: the voxels hold 91 % more than the solid"), std::string::npos)
+        << few.err;
+    EXPECT_EQ(voxelize({"shape:sphere", "-o", "t.vdb", "-r", "1", "--strict"}).status, 4);
+    EXPECT_EQ(mFolder.contents(), Names{"s.vdb"});
+}
+
 TEST_F(Voxelize, VoxelsCanBeDrawnByEveryShading) {
     ASSERT_EQ(voxelize({"shape:torus", "-o", "t.vdb", "-r", "32"}).status, 0);
     std::vector<std::string> pictures;

@@ -11,6 +11,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -327,6 +328,16 @@ TEST(VoxelsToImage, RefusesAsTheOthersDo) {
         options.iso = 0.5;
         options.camera.lookat = Vec3d(0, 0, 300);
         EXPECT_EQ(kindOfFailure(ballGrid(), options), ErrorKind::Result);
+    }
+}
+
+TEST(VoxelsToImage, APictureOfVoxelsNamesTheirSource) {
+    const auto grid = ballGrid();
+    bandvox::setVoxelMetadata(*grid, "ball.obj");
+    const std::pair<std::string, std::string> source{"bandvox_source", "ball.obj"};
+    for (const Shading shading : {Shading::Spectral, Shading::Phong}) {
+        const auto metadata = densityToImage(grid, pixelPerVoxel(shading)).image.metadata;
+        EXPECT_EQ(std::count(metadata.begin(), metadata.end(), source), 1);
     }
 }
 

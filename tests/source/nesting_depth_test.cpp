@@ -150,6 +150,18 @@ TEST(NestingDepth, FilesThatAreDeepEnoughAreRead) {
               std::string::npos);
 }
 
+// Each node holds the next one twice: 2^n ways lead to the last.
+TEST(NestingDepth, NodesUnderTwoAreRefused) {
+    const TemporaryFolder folder;
+    const auto path =
+        folder.write("a.gltf", test::embeddedGltf(test::cube(openvdb::Vec3d(0.0), 1.0),
+                                                  R"({"children":[1,1]},{"children":[2,2]},)"
+                                                  R"({"mesh":0})",
+                                                  1));
+    EXPECT_NE(messageOf(path).find("has a node 1 that is a child twice"), std::string::npos)
+        << messageOf(path);
+}
+
 TEST(NestingDepth, NodesUnderThemselvesAreRefused) {
     const TemporaryFolder folder;
     const auto path =

@@ -60,7 +60,8 @@ double chooseVoxelSize(const std::string& source, const openvdb::BBoxd& bounds,
         throw Error(options.voxelSize > 0 ? ErrorKind::Usage : ErrorKind::Input,
                     source + ": a voxel would be " + inShort(voxelSize) +
                         " world units, and OpenVDB's transforms take no less than " +
-                        inShort(kSmallestVoxel) + "; scale the object up");
+                        inShort(kSmallestVoxel) +
+                        (options.voxelSize > 0 ? "; use larger ones" : "; scale the object up"));
     }
     return voxelSize;
 }

@@ -40,7 +40,8 @@ std::int64_t availableInAddressSpace() {
 
 std::string inGigabytes(double bytes) {
     char text[32];
-    std::snprintf(text, sizeof text, bytes < 1e12 ? "%.2f GB" : "%.3g GB", bytes * 1e-9);
+    const bool isOfMachine = bytes >= 1e8 && bytes < 1e12;
+    std::snprintf(text, sizeof text, isOfMachine ? "%.2f GB" : "%.3g GB", bytes * 1e-9);
     return text;
 }
 

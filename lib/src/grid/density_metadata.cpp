@@ -49,6 +49,11 @@ void setVoxelMetadata(openvdb::GridBase& grid, const std::string& source) {
     setMember(grid, "iso", 0.5);
 }
 
+std::string sourceOf(const openvdb::GridBase& grid) {
+    const auto source = grid.getMetadata<openvdb::StringMetadata>(std::string(kPrefix) + "source");
+    return source ? source->value() : std::string();
+}
+
 std::optional<DensityMetadata> densityMetadata(const openvdb::GridBase& grid) {
     // Without its filter a density cannot be read as a band-limited one.
     for (const char* needed : {"order", "cutoff"}) {

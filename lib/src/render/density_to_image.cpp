@@ -187,7 +187,7 @@ RenderResult densityToImage(const openvdb::FloatGrid::ConstPtr& grid, const Rend
 
     // Draw.
     RenderResult result;
-    result.image = blankImage(options, iso, metadata);
+    result.image = blankImage(options, iso, *grid);
     const Scene scene(*grid, options, camera, march, slope);
     result.hits = drawTiles(scene, *reconstruction, result.image, progress);
     result.rays = std::int64_t(options.width) * options.height * options.samples;

@@ -160,8 +160,9 @@ OIIO::ImageSpec specOf(const Image& image, bool png) {
     return spec;
 }
 
-bool writeStrips(OIIO::ImageOutput& output, const Image& image, bool png) {
+bool writeStrips(OIIO::ImageOutput& output, const Image& image, bool png, Progress& progress) {
     for (int top = 0; top < image.height; top += kStripRows) {
+        progress.throwIfInterrupted();
         const int bottom = std::min(top + kStripRows, image.height);
         const std::size_t begin = static_cast<std::size_t>(top) * image.width;
         const std::size_t end = static_cast<std::size_t>(bottom) * image.width;
@@ -175,7 +176,8 @@ bool writeStrips(OIIO::ImageOutput& output, const Image& image, bool png) {
 }
 
 // Returns what went wrong, or nothing.
-std::string encode(const std::string& name, const Image& image, OIIO::Filesystem::IOProxy& proxy) {
+std::string encode(const std::string& name, const Image& image, OIIO::Filesystem::IOProxy& proxy,
+                   Progress& progress) {
     const bool png = extensionOf(name) == ".png";
     OIIO::ImageSpec spec = specOf(image, png);
     OIIO::Filesystem::IOProxy* pointer = &proxy;
@@ -183,7 +185,8 @@ std::string encode(const std::string& name, const Image& image, OIIO::Filesystem
     const auto output = OIIO::ImageOutput::create(name, &proxy);
     if (!output) return OIIO::geterror();
     if (!output->supports("ioproxy")) return "OpenImageIO cannot write it through this library";
-    if (!output->open(name, spec) || !writeStrips(*output, image, png) || !output->close()) {
+    if (!output->open(name, spec) || !writeStrips(*output, image, png, progress) ||
+        !output->close()) {
         return output->geterror();
     }
     return {};
@@ -196,7 +199,7 @@ bool isImageFile(const std::filesystem::path& path) {
     return extension == ".png" || extension == ".exr";
 }
 
-void writeImage(AtomicFile& file, const Image& image) {
+void writeImage(AtomicFile& file, const Image& image, Progress& progress) {
     const std::filesystem::path& path = file.target();
     if (!isImageFile(path)) failExtension(path);
     requireComplete(image);
@@ -207,12 +210,12 @@ void writeImage(AtomicFile& file, const Image& image) {
         // An encoder goes back to fill in what it knows at the end.
         std::vector<unsigned char> bytes;
         OIIO::Filesystem::IOVecOutput memory(bytes);
-        failure = encode(path.string(), image, memory);
+        failure = encode(path.string(), image, memory, progress);
         stream.write(reinterpret_cast<const char*>(bytes.data()),
                      static_cast<std::streamsize>(bytes.size()));
     } else {
         StreamProxy proxy(stream);
-        failure = encode(path.string(), image, proxy);
+        failure = encode(path.string(), image, proxy, progress);
         diskFailure = proxy.failure();
     }
     if (diskFailure == 0) {

@@ -35,8 +35,7 @@ std::vector<openvdb::Vec2d> samplePlaces(int samples) {
     return places;
 }
 
-Image blankImage(const RenderOptions& options, double iso,
-                 const std::optional<DensityMetadata>& metadata) {
+Image blankImage(const RenderOptions& options, double iso, const openvdb::GridBase& grid) {
     const std::size_t pixels = static_cast<std::size_t>(options.width) * options.height;
     requireMemory(11.0 * sizeof(float) * static_cast<double>(pixels), "the picture");
     Image image;
@@ -50,9 +49,8 @@ Image blankImage(const RenderOptions& options, double iso,
     isoText << iso;
     image.metadata = {{"Software", std::string("Bandvox ") + version()},
                       {"bandvox_iso", isoText.str()}};
-    if (metadata && !metadata->source.empty()) {
-        image.metadata.emplace_back("bandvox_source", metadata->source);
-    }
+    const std::string source = sourceOf(grid);
+    if (!source.empty()) image.metadata.emplace_back("bandvox_source", source);
     return image;
 }
 

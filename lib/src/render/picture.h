@@ -10,7 +10,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <optional>
 #include <vector>
 
 namespace bandvox {
@@ -18,10 +17,9 @@ namespace bandvox {
 /// Where in a pixel, [0, 1)², its lines of sight pass: rows of evenly spaced places.
 std::vector<openvdb::Vec2d> samplePlaces(int samples);
 
-/// A picture in which nothing is seen yet. Throws Error(ErrorKind::Memory) before allocating if
-/// it would not fit.
-Image blankImage(const RenderOptions& options, double iso,
-                 const std::optional<DensityMetadata>& metadata);
+/// A picture of `grid` in which nothing is seen yet. Throws Error(ErrorKind::Memory) before
+/// allocating if it would not fit.
+Image blankImage(const RenderOptions& options, double iso, const openvdb::GridBase& grid);
 
 /// What a line of sight meets.
 struct Sight {

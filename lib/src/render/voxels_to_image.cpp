@@ -161,7 +161,7 @@ RenderResult voxelsToImage(const VoxelScene& scene, Progress& progress) {
     if (solid.empty()) failEmpty(solid.maximum(), scene.iso);
 
     RenderResult result;
-    result.image = blankImage(options, scene.iso, densityMetadata(scene.grid));
+    result.image = blankImage(options, scene.iso, scene.grid);
     requireMemory(VoxelPicture::kBytesPerPixel * static_cast<double>(result.image.depth.size()),
                   "the picture");
     VoxelPicture picture(scene, solid, result.image);

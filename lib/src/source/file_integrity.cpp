@@ -5,6 +5,7 @@
 
 #include <bandvox/core/error.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -12,7 +13,10 @@
 namespace bandvox {
 
 void FileContents::fail(const std::string& what) const {
-    throw Error(ErrorKind::Input, "\"" + path.string() + "\" " + what);
+    std::string message = "\"" + path.string() + "\" " + what;
+    // What is quoted from the file may have zeros in it, which would end the message.
+    std::replace(message.begin(), message.end(), '\0', '?');
+    throw Error(ErrorKind::Input, message);
 }
 
 FileContents readFile(const std::filesystem::path& path) {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -37,8 +38,21 @@ const ptree& child(const ptree& tree, const char* name) {
     return found ? *found : none;
 }
 
+/// Complains about a node that is the child of two. The specification forbids it, and the importer
+/// would copy what is below such nodes once for each way that leads there.
+void requireTrees(const FileContents& file, const std::vector<std::vector<std::string>>& children) {
+    std::set<std::string> seen;
+    for (const auto& names : children) {
+        for (const std::string& name : names) {
+            if (seen.insert(name).second) continue;
+            file.fail("has a node " + name.substr(0, 40) +
+                      " that is a child twice; expected each once at most");
+        }
+    }
+}
+
 /// How deep the nodes are under each other. The importer follows their children by calling itself.
-std::size_t nodeDepth(const ptree& tree) {
+std::size_t nodeDepth(const FileContents& file, const ptree& tree) {
     // Version 1 names the nodes, version 2 counts them.
     std::map<std::string, std::size_t> numbers;
     std::vector<std::vector<std::string>> children;
@@ -47,6 +61,7 @@ std::size_t nodeDepth(const ptree& tree) {
         auto& names = children.emplace_back();
         for (const auto& [none, value] : child(node, "children")) names.push_back(value.data());
     }
+    requireTrees(file, children);
 
     // Depth of the nodes below each, itself included; 0 if it is not known yet. A node that is its
     // own descendant ends its path here, and the importer refuses it.
@@ -123,7 +138,7 @@ std::size_t checkGltf(const FileContents& file) {
     if (!version.starts_with("1") && !version.starts_with("2")) {
         file.fail("is of version \"" + version.substr(0, 40) + "\" of glTF; expected 1 or 2");
     }
-    requireShallow(file, nodeDepth(tree));
+    requireShallow(file, nodeDepth(file, tree));
     // Version 1 is laid out in another way.
     return version.starts_with("2") ? countTriangles(tree) : 0;
 }

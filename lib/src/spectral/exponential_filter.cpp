@@ -88,12 +88,13 @@ double filterReach(const ExponentialFilter& filter, double tolerance) {
         if (r + kReachStep > searched && reach > 0.75 * searched) {
             searched *= 2;
             if (searched > kLongestReach) {
-                throw Error(ErrorKind::Usage,
-                            "a filter of order " + inShort(filter.order) + " and cutoff " +
-                                inShort(filter.cutoff) + " reaches farther than " +
-                                inShort(kLongestReach) + " voxels at a tolerance of " +
-                                inShort(tolerance) +
-                                "; raise the order, the cutoff or the tolerance");
+                throw Error(
+                    ErrorKind::Usage,
+                    "a filter of order " + inShort(filter.order) + " and cutoff " +
+                        inShort(filter.cutoff) + " reaches farther than " + inShort(kLongestReach) +
+                        " voxels at a tolerance of " + inShort(tolerance) + "; " +
+                        (filter.order < 2 ? "raise the order, " : "lower the order, or raise ") +
+                        "the cutoff or the tolerance");
             }
         }
     }

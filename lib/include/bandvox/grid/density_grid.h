@@ -46,6 +46,9 @@ std::optional<DensityMetadata> densityMetadata(const openvdb::GridBase& grid);
 /// and bandvox_iso = 0.5. For densityMetadata it stays a grid of unknown origin.
 void setVoxelMetadata(openvdb::GridBase& grid, const std::string& source);
 
+/// What a grid of this library, of densities or of binary voxels, was made from; empty of others.
+std::string sourceOf(const openvdb::GridBase& grid);
+
 /// Integral of the density: the sum of all active values times a voxel's volume, world units³.
 /// Summed in one order, so the same for any number of threads.
 double densityIntegral(const openvdb::FloatGrid& grid);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <bandvox/core/progress.h>
+
 #include <cstddef>
 #include <filesystem>
 #include <limits>
@@ -31,7 +33,7 @@ bool isImageFile(const std::filesystem::path& path);
 /// extension.
 void writeImage(const std::filesystem::path& path, const Image& image);
 
-/// The same to a file that the caller commits.
-void writeImage(AtomicFile& file, const Image& image);
+/// The same to a file that the caller commits. Throws Error(ErrorKind::Interrupted) besides.
+void writeImage(AtomicFile& file, const Image& image, Progress& progress = silentProgress());
 
 }  // namespace bandvox
