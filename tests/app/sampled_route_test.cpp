@@ -46,6 +46,29 @@ TEST(SampledRoute, ToleranceThatIsAskedForIsKeptOrNothingWritten) {
     EXPECT_EQ(convertCube(folder, {"--oversample", "16", "--tolerance", "0.04"}).status, 0);
 }
 
+TEST(SampledRoute, ErrorThatIsNotKnownKeepsToNoTolerance) {
+    const TemporaryFolder folder;
+    const RunResult failed = convertCube(folder, {"--oversample", "3", "--tolerance", "0.05"});
+    EXPECT_EQ(failed.status, 4) << failed.err;
+    EXPECT_NE(failed.err.find("not known for an odd --oversample"), std::string::npos)
+        << failed.err;
+    EXPECT_EQ(folder.contents(), Names{});
+}
+
+TEST(SampledRoute, AnotherVolumeThanTheShapesIsAWarning) {
+    const TemporaryFolder folder;
+    const RunResult few =
+        runBandvox({"convert", "shape:sphere", "-o", "a.vdb", "--route", "sampled", "-r", "1"},
+                   {.folder = folder.path()});
+    EXPECT_EQ(few.status, 0) << few.err;
+    EXPECT_EQ(countLines(few.err, "bandvox: warning: the integral"), 1) << few.err;
+    const RunResult absurd = runBandvox(
+        {"convert", "shape:sphere", "-o", "b.vdb", "--route", "sampled", "--voxel-size", "1e300"},
+        {.folder = folder.path()});
+    EXPECT_EQ(absurd.status, 2) << absurd.err;
+    EXPECT_EQ(folder.contents(), Names{"a.vdb"});
+}
+
 TEST(SampledRoute, ErrorThatIsNotKnownIsAWarning) {
     const TemporaryFolder folder;
     const RunResult result = convertCube(folder, {"--oversample", "3", "--stats", "s.json"});

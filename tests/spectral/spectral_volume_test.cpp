@@ -160,6 +160,27 @@ TEST(SpectralVolumeTest, ThreadsChangeNothing) {
     EXPECT_EQ(screens[0].normal, screens[1].normal);
 }
 
+// 1 everywhere, of which no more is seen than its box.
+class EndlessField final : public FieldSource {
+  public:
+    std::string name() const override { return "endless"; }
+    openvdb::BBoxd bounds() const override { return {Vec3d(-0.49), Vec3d(0.49)}; }
+    void sampleRow(const Vec3d&, const Vec3d&, std::span<float> values) const override {
+        std::fill(values.begin(), values.end(), 1.0F);
+    }
+};
+
+// 31 of 64 samples lie in the box along each axis; 63 of 128.
+TEST(SpectralVolumeTest, AFieldEndsWithItsBox) {
+    for (const int samples : {64, 128}) {
+        const int inside = samples / 2 - 1;
+        const SpectralVolume volume =
+            fieldToSpectrum(EndlessField(), {16, samples, {2, 0.16}, SpectralDomain{Vec3d(-1), 2}});
+        EXPECT_NEAR(volume.coefficient(0, 0, 0).real() * std::pow(samples / 16.0, 3),
+                    std::pow(inside, 3), 0.01);
+    }
+}
+
 template <typename Make>
 void expectRefused(const Make& make, const std::vector<std::string>& values) {
     try {
@@ -190,6 +211,12 @@ TEST(SpectralVolumeTest, WrongSizesAreRefusedWithTheirValues) {
             fieldToSpectrum(*source, {8, 16, {}, SpectralDomain{Vec3d(0), 0}});
         },
         {"0"});
+    for (const double far : {double(NAN), HUGE_VAL, -HUGE_VAL, 1e300}) {
+        const auto makeFar = [&] {
+            fieldToSpectrum(*source, {8, 16, {}, SpectralDomain{Vec3d(0, far, 0), 2}});
+        };
+        expectRefused(makeFar, {std::isnan(far) ? "nan" : std::isinf(far) ? "inf" : "1e+300", "2"});
+    }
     const SpectralVolume volume = fieldToSpectrum(*source, {8, 16, {}, {}});
     expectRefused([&] { spectrumToScreen(volume, {0}); }, {"8", "0"});
     expectRefused([&] { spectrumToScreen(volume, {1 << 20}); }, {"8", std::to_string(1 << 20)});

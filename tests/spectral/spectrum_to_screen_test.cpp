@@ -11,6 +11,8 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <random>
+#include <vector>
 
 namespace bandvox {
 namespace {
@@ -125,6 +127,60 @@ TEST_P(ScreenOfShape, EqualsThePaddedTransform) {
 INSTANTIATE_TEST_SUITE_P(Shapes, ScreenOfShape,
                          testing::Values("shape:hyperboloid", "shape:cube", "shape:two-balls",
                                          "shape:tree"));
+
+// A density of random waves, which all have their counterparts; `flat`: constant along z.
+PreciseSpectralVolume randomVolume(int n, bool flat, unsigned seed) {
+    PreciseSpectralVolume volume(n, n, {2, 0.16}, kDomain);
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    const auto mirror = [n](int i) { return (n - i) % n; };
+    for (int l = 0; l < n; ++l) {
+        for (int m = 0; m < n; ++m) {
+            if (2 * l == n || 2 * m == n) continue;
+            for (int k = 1; 2 * k < n && !flat; ++k) {
+                volume.row(l, m)[k] = {normal(random), normal(random)};
+            }
+            const std::complex<double> value(normal(random), normal(random));
+            volume.row(l, m)[0] += value;
+            volume.row(mirror(l), mirror(m))[0] += std::conj(value);
+        }
+    }
+    return volume;
+}
+
+// Section 5.3 leaves out what cannot be seen, and nothing else.
+TEST(SpectrumToScreen, NothingThatIsSeenIsLeftOut) {
+    int seen = 0;
+    const auto expectSame = [&](const PreciseSpectralVolume& volume, double iso) {
+        const Screen all =
+            spectrumToScreen(volume, {.magnification = 2, .iso = iso, .onlySeen = false});
+        const Screen some =
+            spectrumToScreen(volume, {.magnification = 2, .iso = iso, .onlySeen = true});
+        EXPECT_EQ(all.depth, some.depth) << iso;
+        for (std::size_t i = 0; i < all.normal.size(); ++i) {
+            EXPECT_LE((all.normal[i] - some.normal[i]).length(), 1e-5F) << i;
+            if (!std::isinf(all.depth[i])) ++seen;
+        }
+    };
+    for (unsigned seed = 0; seed < 100; ++seed) {
+        const PreciseSpectralVolume volume = randomVolume(4 + 2 * (seed % 4), seed % 2 == 1, seed);
+        const std::vector<double> values = volume.lattice();
+        const double highest = *std::max_element(values.begin(), values.end());
+        for (const double part : {0.3, 0.6, 0.9, 1.0}) expectSame(volume, part * highest);
+    }
+    EXPECT_GT(seen, 1000);
+
+    // Solids anywhere in the domain, and beyond its end.
+    for (const char* shape : {"shape:tree", "shape:hyperboloid", "shape:sphere"}) {
+        for (const Vec3d origin : {Vec3d(-1.3, -1.2, -1.4), Vec3d(-1.9, -1.05, -1.2), Vec3d(0)}) {
+            const auto volume = fieldToSpectrum<double>(
+                *makeShapeField(shape), {16, 64, {2, 0.16}, SpectralDomain{origin, 3}});
+            const std::vector<double> values = volume.lattice();
+            const double highest = *std::max_element(values.begin(), values.end());
+            for (const double part : {0.5, 0.8, 0.95}) expectSame(volume, part * highest);
+        }
+    }
+}
 
 TEST(SpectrumToScreen, SingleAndDoublePrecisionSeeTheSame) {
     const auto source = makeShapeField("shape:torus");

@@ -17,6 +17,7 @@ constexpr double kLowestTolerance = 1e-6;
 constexpr double kHighestTolerance = 0.05;
 constexpr int kHighestResolution = 1 << 20;
 constexpr int kLargestTile = 512;
+constexpr double kLargestVoxel = 1e60;    // world units; the volumes of many are still finite
 constexpr double kSmallestVoxel = 1e-14;  // world units; a scale below 1e-15 is 0 to OpenVDB
 
 }  // namespace
@@ -62,6 +63,11 @@ double chooseVoxelSize(const std::string& source, const openvdb::BBoxd& bounds,
                         " world units, and OpenVDB's transforms take no less than " +
                         inShort(kSmallestVoxel) +
                         (options.voxelSize > 0 ? "; use larger ones" : "; scale the object up"));
+    }
+    if (!(voxelSize <= kLargestVoxel)) {
+        throw Error(options.voxelSize > 0 ? ErrorKind::Usage : ErrorKind::Input,
+                    source + ": a voxel would be " + inShort(voxelSize) +
+                        " world units; it must be at most " + inShort(kLargestVoxel));
     }
     return voxelSize;
 }

@@ -9,13 +9,6 @@
 
 namespace bandvox {
 
-namespace {
-
-// A sample this near to the face of the field's box is on it, samples.
-constexpr double kOnFace = 1e-6;
-
-}  // namespace
-
 void FieldStatistics::add(const FieldStatistics& other) {
     difference = std::max(difference, other.difference);
     minimum = std::min(minimum, other.minimum);
@@ -73,15 +66,12 @@ void FieldColumn::enter(const openvdb::Coord& tile) {
     const openvdb::Coord origin = mSampling.layout.tileOrigin(tile);
     const openvdb::BBoxd box = mSampling.source.bounds();
     const double perWorld = mSampling.oversample / mSampling.layout.voxelSize;
-    const auto samples = static_cast<double>(mSampling.fine.samples());
     for (int axis = 0; axis < 3; ++axis) {
         mFirstSample[axis] =
             (static_cast<std::int64_t>(origin[axis]) - mGeometry.halo) * mSampling.oversample;
         const auto first = static_cast<double>(mFirstSample[axis]);
-        const double begin = std::ceil(box.min()[axis] * perWorld - first - kOnFace);
-        const double end = std::floor(box.max()[axis] * perWorld - first + kOnFace) + 1;
-        mRange[axis].begin = static_cast<int>(std::clamp(begin, 0.0, samples));
-        mRange[axis].end = static_cast<int>(std::clamp(end, 0.0, samples));
+        mRange[axis] = samplesWithin(box.min()[axis] * perWorld - first,
+                                     box.max()[axis] * perWorld - first, mSampling.fine.samples());
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include "bandlimit/block_store.h"
 #include "bandlimit/tile_reduction.h"
+#include "source/sample_range.h"
 
 #include <bandvox/core/progress.h>
 #include <bandvox/source/field_source.h>
@@ -44,12 +45,6 @@ class FieldColumn {
     ColumnBlocks fill(int y, int z, FieldStatistics& statistics, Progress& progress);
 
   private:
-    /// The part of a tile's R samples along an axis at which the field need not be 0.
-    struct SampleRange {
-        int begin, end;
-        bool contains(int i) const { return i >= begin && i < end; }
-    };
-
     void enter(const openvdb::Coord& tile);
     double world(int axis, int sample) const;
     std::optional<float> knownIn(const openvdb::Coord& first, const openvdb::Coord& last) const;
@@ -73,7 +68,7 @@ class FieldColumn {
 
     // Of the tile at hand.
     std::int64_t mFirstSample[3] = {};  // on the lattice of all samples
-    SampleRange mRange[3] = {};
+    SampleRange mRange[3];              // in which the field need not be 0
 };
 
 }  // namespace bandvox

@@ -1,4 +1,5 @@
 #include "core/worker_pool.h"
+#include "source/sample_range.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>
@@ -26,35 +27,23 @@ SpectralDomain chooseDomain(const FieldSource& source, const SpectrumOptions& op
     return {box.getCenter() - openvdb::Vec3d(side / 2), side};
 }
 
-// The samples along an axis at which the field need not be 0: [begin, end).
-struct SampleRange {
-    int begin, end;
-};
-
-SampleRange rangeOf(double low, double high, double origin, double step, int samples) {
-    const auto clamped = [&](double at) {
-        return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(samples)));
-    };
-    const int begin = clamped(std::floor((low - origin) / step));
-    return {begin, std::max(begin, clamped(std::ceil((high - origin) / step) + 1))};
-}
-
 // Where the field is sampled: R³ places, of which only those in the field's box need be asked.
 struct Sampling {
     Sampling(const FieldSource& field, const SpectralDomain& domain, int samples)
         : source(field), origin(domain.origin), step(domain.side / samples) {
         const openvdb::BBoxd box = field.bounds();
         for (int axis = 0; axis < 3; ++axis) {
-            range[axis] = rangeOf(box.min()[axis], box.max()[axis], origin[axis], step, samples);
+            range[axis] = samplesWithin((box.min()[axis] - origin[axis]) / step,
+                                        (box.max()[axis] - origin[axis]) / step, samples);
         }
     }
 
-    bool isEmptyPlane(int x) const { return x < range[0].begin || x >= range[0].end; }
+    bool isEmptyPlane(int x) const { return !range[0].contains(x); }
 
     // Samples a row along z into `row`, which is 0 where the field is.
     void sample(int x, int y, std::span<float> row) const {
         std::fill(row.begin(), row.end(), 0.0F);
-        if (isEmptyPlane(x) || y < range[1].begin || y >= range[1].end) return;
+        if (isEmptyPlane(x) || !range[1].contains(y)) return;
         const openvdb::Vec3d start = origin + step * openvdb::Vec3d(x, y, range[2].begin);
         source.sampleRow(start, openvdb::Vec3d(0, 0, step),
                          row.subspan(range[2].begin, range[2].end - range[2].begin));

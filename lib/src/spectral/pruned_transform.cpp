@@ -1,6 +1,7 @@
 #include "spectral/complex_fft.h"
 
 #include <bandvox/core/error.h>
+#include <bandvox/core/memory.h>
 #include <bandvox/spectral/pruned_transform.h>
 
 #include <algorithm>
@@ -46,7 +47,7 @@ void multiplyRow(const std::complex<Real>& factor, const std::complex<Real>* fro
     }
 }
 
-// An array for `size` numbers, with room for a multiple of what vector instructions take.
+// An array for at least `size` numbers.
 template <typename Complex>
 Complex* reserve(std::vector<Complex>& scratch, std::size_t size) {
     if (scratch.size() < size) scratch.resize(size);
@@ -65,6 +66,8 @@ LowFrequencyTransform<Real>::LowFrequencyTransform(int samples, int frequencies)
                                           "the number of frequencies, and both positive");
     }
     const int parts = samples / frequencies;
+    requireMemory(static_cast<double>(samples) * sizeof(Complex),
+                  ("a transform of R = " + std::to_string(samples) + " samples").c_str());
     mTwiddles.reserve(samples);
     for (std::int64_t p = 0; p < parts; ++p) {
         for (int k = 0; k < frequencies; ++k) {
@@ -153,6 +156,8 @@ PhaseTransform<Real>::PhaseTransform(int frequencies, int magnification)
                                           std::to_string(magnification) +
                                           "; both must be positive and their product below 2^31");
     }
+    requireMemory(static_cast<double>(places) * sizeof(Complex),
+                  ("a transform to M = LN = " + std::to_string(places) + " places").c_str());
     mTwiddles.reserve(static_cast<std::size_t>(places));
     for (std::int64_t s = 0; s < magnification; ++s) {
         for (int k = 0; k < frequencies; ++k) {

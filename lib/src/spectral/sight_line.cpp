@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace bandvox {
@@ -10,6 +11,10 @@ namespace {
 constexpr int kPadding = 4;
 constexpr double kRefinement = 1e-5;  // of a step
 constexpr int kMostRefinements = 60;
+
+template <typename Real>
+constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
+
 }  // namespace
 
 template <typename Real>
@@ -32,13 +37,16 @@ typename SightLines<Real>::Work SightLines<Real>::makeWork() const {
 
 template <typename Real>
 Real SightLines<Real>::bound(const Complex* spectrum) const {
-    Real sum = 0;
-    for (int n = 1; n < mHalf; ++n) {
+    const auto magnitude = [&](int n) {
         const Real re = spectrum[n].real();
         const Real im = spectrum[n].imag();
-        sum += std::sqrt(re * re + im * im);
-    }
-    return (std::abs(spectrum[0].real()) + 2 * sum) / static_cast<Real>(mFrequencies);
+        return std::sqrt(re * re + im * im);
+    };
+    Real sum = 0;
+    for (int n = 1; n < mHalf; ++n) sum += magnitude(n);
+    // More than what rounding takes off.
+    const Real slack = 1 + 8 * static_cast<Real>(mFrequencies) * kEpsilon<Real>;
+    return slack * (magnitude(0) + 2 * sum) / static_cast<Real>(mFrequencies);
 }
 
 template <typename Real>

@@ -12,7 +12,7 @@
 namespace bandvox {
 
 /// Lines of sight along z, each given by its N/2 + 1 frequencies; Nyquist is 0. One object serves
-/// all threads; the arrays that a thread needs are in a SightLineWork.
+/// all threads; the arrays that a thread needs are in a SightLines::Work.
 template <typename Real>
 class SightLines {
   public:
@@ -28,7 +28,9 @@ class SightLines {
     };
     Work makeWork() const;
 
-    /// The highest density that the line can reach anywhere.
+    /// The largest magnitude that the sum of the line's waves, n < 0 included, can have anywhere:
+    /// the highest density of a line of sight, and the most that one of the frequencies along x or
+    /// y, whose term n = 0 is complex, can add to one.
     Real bound(const Complex* spectrum) const;
 
     /// The first place z, in steps of 1/L voxel, where the line's density is above `iso`; the

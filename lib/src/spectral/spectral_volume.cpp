@@ -1,3 +1,4 @@
+#include "core/words.h"
 #include "spectral/complex_fft.h"
 
 #include <bandvox/core/error.h>
@@ -50,6 +51,16 @@ BasicSpectralVolume<Real>::BasicSpectralVolume(int resolution, int samples,
     if (!(domain.side > 0) || !std::isfinite(domain.side)) {
         throw Error(ErrorKind::Usage, "the domain of a spectral volume has the side " +
                                           std::to_string(domain.side) + "; it must be positive");
+    }
+    // Beyond that places could not be told apart.
+    constexpr double kFarthest = 1e9;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(std::abs(domain.origin[axis]) <= kFarthest * domain.side)) {
+            throw Error(ErrorKind::Usage, "the domain of a spectral volume begins at " +
+                                              inShort(domain.origin[axis]) + " and its side is " +
+                                              inShort(domain.side) +
+                                              "; it must begin within a thousand million sides");
+        }
     }
     const std::size_t size = static_cast<std::size_t>(resolution) * resolution * mRowStride;
     requireMemory(static_cast<double>(size) * sizeof(Complex),
@@ -110,6 +121,9 @@ template <typename Real>
 std::vector<Real> BasicSpectralVolume<Real>::lattice() const {
     const int n = mResolution;
     const std::size_t plane = static_cast<std::size_t>(n) * mRowStride;
+    const double count = static_cast<double>(n) * n * n;
+    requireMemory(static_cast<double>(mData.size()) * sizeof(Complex) + count * sizeof(Real),
+                  ("a lattice of N = " + std::to_string(n)).c_str());
     std::vector<Complex> work(mData);
 
     // Along x, then in each plane along y and z.

@@ -20,7 +20,8 @@ class FieldSource {
     /// What it was made from: a file's name, or "shape:torus".
     virtual std::string name() const = 0;
 
-    /// A box outside which the field is 0, world units.
+    /// A box outside which the field is 0, world units. Of values outside it nobody takes any
+    /// notice; its faces count in.
     virtual openvdb::BBoxd bounds() const = 0;
 
     /// The value that the field has everywhere in `box` (world units), if that is cheap to know. It
