@@ -5,6 +5,7 @@ and constants that it quotes. Needs the Debian package python3-matplotlib (scrip
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.lines import Line2D
 from plot_oversampling import plot_question
 from tables import COLOURS, FILTERS, column, name_of, read, save, select
 from theory import curvature_constant, face_slope
@@ -88,6 +89,8 @@ def plot_volume():
             axis.grid(alpha=0.3)
     axes[0, 0].set_ylabel("iso-value that keeps the volume")
     axes[1, 0].set_ylabel("volume error at 0.5, %")
+    axes[0, 0].legend(handles=[Line2D([], [], color="k", ls=":", lw=1.5)],
+                      labels=["theory (7), each filter"], fontsize=8, loc="lower right")
     axes[0, 2].legend(fontsize=8)
     save(figure, "volume")
 

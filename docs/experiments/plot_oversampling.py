@@ -59,7 +59,8 @@ def plot_oversampling():
         axis.minorticks_off()
     axes[0, 2].set_ylim(3e-6, 0.8)
     axes[1, 2].set_ylim(6e-7, 0.8)
-    axes[0, 0].legend(fontsize=7.5, loc="lower left")
+    # Where no line runs.
+    axes[0, 2].legend(fontsize=7.5, loc="lower left")
     axes[1, 0].legend(handles=axes[1, 0].get_lines()[-2:], fontsize=7.5, loc="lower left")
     save(figure, "oversampling")
 
