@@ -1,6 +1,7 @@
-// Measures what docs/experiments/README.md reports, each question as one or two .csv files.
+// Measures what docs/experiments/README.md and docs/math/sampled-route.md report, each question as
+// one or two .csv files.
 //
-//     bandvox_experiments FOLDER [oversampling|near-objects|lost-detail|volume]...
+//     bandvox_experiments FOLDER [EXPERIMENT]...   (kExperiments names them)
 
 #include "experiments.h"
 
@@ -21,10 +22,9 @@ using namespace bandvox;
 using namespace bandvox::experiments;
 
 const std::pair<std::string, void (*)(const Folder&)> kExperiments[] = {
-    {"oversampling", measureOversampling},
-    {"near-objects", measureNearObjects},
-    {"lost-detail", measureLostDetail},
-    {"volume", measureVolume},
+    {"oversampling", measureOversampling}, {"near-objects", measureNearObjects},
+    {"lost-detail", measureLostDetail},    {"volume", measureVolume},
+    {"stated-error", measureStatedError},
 };
 
 void run(const Folder& folder, const std::vector<std::string>& wanted) {

@@ -22,4 +22,8 @@ void measureLostDetail(const Folder& folder);
 /// The iso-value whose surface encloses the solid's volume.
 void measureVolume(const Folder& folder);
 
+/// The sampled route's true error against the one that it states, for solids of random size and
+/// place.
+void measureStatedError(const Folder& folder);
+
 }  // namespace bandvox::experiments
