@@ -238,6 +238,34 @@ TYPED_TEST(PrunedTransform, CountsAreThePapersFormulas) {
     }
 }
 
+// Where W/L does not divide N, no transform belongs to the paper's formula. What
+// docs/math/pruned-transforms.md says of how (c) compares with it:
+TEST(PrunedTransformCounts, OfAnyNumberOfPlacesAgainstThePapers) {
+    std::vector<std::complex<double>> scratch;
+    const auto overPaper = [&scratch](int n, int wanted) {
+        const PhaseTransform<double> phases(n, 1);
+        const std::vector<std::complex<double>> spectrum(n);
+        std::vector<std::complex<double>> values(wanted);
+        std::vector<int> places(wanted);
+        for (int i = 0; i < wanted; ++i) places[i] = i;
+        OperationCount count;
+        SubsetTransform<double> subset(phases);
+        subset(0, places, {spectrum.data(), 1}, {values.data(), 1}, 1, scratch, &count);
+        EXPECT_LE(count.multiplications, n * (1 + std::log2(n)) * (1 + 1e-9));  // that of (b)
+        return count.multiplications / (n * (1 + std::log2(wanted)) + n - wanted);
+    };
+    for (const int n : {8, 12, 16, 32, 48, 64, 96, 128, 256}) {
+        for (int wanted = 1; wanted <= n; ++wanted) {
+            const double ratio = overPaper(n, wanted);
+            EXPECT_LE(ratio, 1 + 1e-9) << "N " << n << ", W/L " << wanted;
+            EXPECT_GE(ratio, 1 - 0.027) << "N " << n << ", W/L " << wanted;
+        }
+    }
+    EXPECT_NEAR(overPaper(31, 5), 1.40, 0.005);
+    EXPECT_NEAR(overPaper(254, 12), 1.44, 0.005);
+    EXPECT_NEAR(overPaper(251, 8), 1.81, 0.005);
+}
+
 TEST(PrunedTransformSizes, WrongOnesAreRefusedWithTheirValues) {
     const auto expectRefused = [](const auto& make, const char* first, const char* second) {
         try {
