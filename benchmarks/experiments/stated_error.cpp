@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numbers>
 #include <numeric>
 #include <random>
 #include <string>
@@ -38,13 +39,18 @@ double errorOverDifference(const BoundarySource& boundary, const FieldSource& fi
     return compare(*sampled.grid, *truth.grid).largest / (0.5 * sampled.metadata.samplingError);
 }
 
-// A solid whose size and place come from random numbers in [0, 1).
+// Solids whose size, place and, if turned, direction are random.
 struct Kind {
     std::string name;
-    double least, most;  // side, radius or thickness, voxels
+    int thinAxes;  // of a box, whose other sides are 8 to 16 voxels; 0 is a ball
+    bool isTurned;
+    double least, most;  // thin side or radius, voxels
 };
 const Kind kKinds[] = {
-    {"box", 8, 24}, {"ball", 1, 15}, {"plate", 3.6, 4.6}, {"plate", 2, 3}, {"plate", 1, 2},
+    {"box", 3, false, 8, 24},        {"ball", 0, false, 1, 15},     {"ball", 0, false, 0.5, 1},
+    {"plate", 1, false, 3.6, 4.6},   {"plate", 1, false, 2, 3},     {"plate", 1, false, 1, 2},
+    {"rod", 2, false, 2, 3},         {"rod", 2, false, 1, 2},       {"turned plate", 1, true, 2, 3},
+    {"turned plate", 1, true, 1, 2}, {"turned rod", 2, true, 1, 2},
 };
 
 double measureOne(const Kind& kind, int number, int oversample) {
@@ -55,7 +61,7 @@ double measureOne(const Kind& kind, int number, int oversample) {
     const double x = between(0, 1);
     const double y = between(0, 1);
     const Vec3d place(x, y, between(0, 1));
-    if (kind.name == "ball") {
+    if (kind.thinAxes == 0) {
         const double radius = between(kind.least, kind.most);
         const auto boundary = makeShapeBoundary("shape:sphere");  // its radius is 1
         const auto field = makeShapeField("shape:sphere");
@@ -64,9 +70,17 @@ double measureOne(const Kind& kind, int number, int oversample) {
                                    1 / radius, oversample);
     }
     Box box{Vec3d(0.0), place};
-    for (int axis = 0; axis < 3; ++axis) {
-        const bool isThin = kind.name == "box" || axis == number % 3;
-        box.half[axis] = 0.5 * (isThin ? between(kind.least, kind.most) : between(8, 16));
+    for (int i = 0; i < 3; ++i) {
+        // A plate's thin side is along each axis in turn.
+        const bool isThin =
+            kind.thinAxes == 2 ? i != number % 3 : kind.thinAxes == 3 || i == number % 3;
+        box.half[i] = 0.5 * (isThin ? between(kind.least, kind.most) : between(8, 16));
+    }
+    if (kind.isTurned) {
+        const double a = between(-1, 1);
+        const double b = between(-1, 1);
+        const Vec3d axis(a, b, between(0.1, 1));
+        box.rotation.setToRotation(axis.unit(), between(0, std::numbers::pi));
     }
     return errorOverDifference(box.boundary(), BoxField(box), 1, oversample);
 }
