@@ -1,5 +1,7 @@
 #include "dense_transform.h"
 
+#include "source/sample_range.h"
+
 #include <bandvox/core/parallel.h>
 #include <bandvox/spectral/pruned_transform.h>
 
@@ -31,12 +33,23 @@ DenseTransform::~DenseTransform() {
 SpectralVolume DenseTransform::lowPass(const FieldSource& source, int resolution,
                                        const ExponentialFilter& filter,
                                        const SpectralDomain& domain) {
+    // Sample the field's box, as Algorithm I does.
     const double step = domain.side / mSize;
-    parallelFor(mSize, [&](std::int64_t x) {
+    const openvdb::BBoxd box = source.bounds();
+    SampleRange range[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        range[axis] = samplesWithin((box.min()[axis] - domain.origin[axis]) / step,
+                                    (box.max()[axis] - domain.origin[axis]) / step, mSize);
+    }
+    parallelFor(mSize, [&](std::int64_t i) {
+        const auto x = static_cast<int>(i);
         for (int y = 0; y < mSize; ++y) {
-            source.sampleRow(
-                domain.origin + step * openvdb::Vec3d(static_cast<double>(x), y, 0), {0, 0, step},
-                std::span(row(static_cast<int>(x), y), static_cast<std::size_t>(mSize)));
+            std::fill_n(row(x, y), mSize, 0.0F);
+            if (!range[0].contains(x) || !range[1].contains(y)) continue;
+            source.sampleRow(domain.origin + step * openvdb::Vec3d(x, y, range[2].begin),
+                             {0, 0, step},
+                             std::span(row(x, y) + range[2].begin,
+                                       static_cast<std::size_t>(range[2].end - range[2].begin)));
         }
     });
     fftwf_execute(mPlan);

@@ -5,8 +5,9 @@
 //   Algorithm II  N³ frequencies become an M×M screen of depths and normals; the dense inverse
 //                 finds depths only, so it is given less to do
 //
-// Each variant runs in a process of its own, by turns; printed are medians. FFTW's plans and the
-// starting of threads are not timed, on either side.
+// Each variant runs in a process of its own, by turns; printed are medians. What they find is
+// compared first. Not timed are the starting of threads and the dense transform's plan; the
+// library's plans, of N points, are.
 
 #include "dense_transform.h"
 #include "process_measurement.h"
@@ -16,12 +17,14 @@
 #include <bandvox/spectral/field_to_spectrum.h>
 #include <bandvox/spectral/spectrum_to_screen.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -125,7 +128,52 @@ void report(const std::string& title, const std::vector<Variant>& variants,
     std::fflush(stdout);
 }
 
+// Both ways have to come to the same, or their times say nothing.
+void checkForward(const Settings& settings, int samples, int resolution) {
+    const auto field = makeShapeField(settings.shape);
+    const SpectrumOptions options = spectrumOptions(samples, resolution);
+    const SpectralVolume pruned = fieldToSpectrum(*field, options);
+    const SpectralVolume dense = DenseTransform(samples, threadCount(), false)
+                                     .lowPass(*field, resolution, options.filter, *options.domain);
+    float largest = 0, difference = 0;
+    for (int l = 0; l < resolution; ++l) {
+        for (int m = 0; m < resolution; ++m) {
+            for (int n = 0; 2 * n < resolution; ++n) {
+                largest = std::max(largest, std::abs(dense.row(l, m)[n]));
+                difference =
+                    std::max(difference, std::abs(dense.row(l, m)[n] - pruned.row(l, m)[n]));
+            }
+        }
+    }
+    if (!(difference <= 1e-5F * largest)) throw std::runtime_error("the frequencies differ");
+}
+
+void checkInverse(const Settings& settings, int resolution, int magnification) {
+    constexpr float kIso = 0.5F;
+    const auto field = makeShapeField(settings.shape);
+    const SpectralVolume volume =
+        fieldToSpectrum(*field, spectrumOptions(8 * resolution, resolution));
+    const Screen screen = spectrumToScreen(volume, {.magnification = magnification, .iso = kIso});
+    const int m = screen.size;
+    const std::vector<int> dense = DenseTransform(m, threadCount(), true).crossings(volume, kIso);
+    std::size_t different = 0;
+    for (int x = 0; x < m; ++x) {
+        for (int y = 0; y < m; ++y) {
+            const float depth = screen.depth[static_cast<std::size_t>(y) * m + x];
+            const int z = dense[static_cast<std::size_t>(x) * m + y];
+            // The screen has the step before the crossing where that is nearer.
+            const bool isSame = z < 0 ? std::isinf(depth)
+                                      : std::abs(depth * static_cast<float>(magnification) -
+                                                 static_cast<float>(z)) < 1.01F;
+            if (!isSame) ++different;
+        }
+    }
+    // Rounding decides at the rim.
+    if (different > dense.size() / 10000) throw std::runtime_error("the crossings differ");
+}
+
 void compareForward(const Settings& settings, int samples, int resolution) {
+    checkForward(settings, samples, resolution);
     const std::vector<Variant> variants{denseForward(settings, samples, resolution),
                                         algorithmI(settings, samples, resolution)};
     report("R = " + std::to_string(samples) + ", N = " + std::to_string(resolution), variants,
@@ -133,6 +181,7 @@ void compareForward(const Settings& settings, int samples, int resolution) {
 }
 
 void compareInverse(const Settings& settings, int resolution, int magnification) {
+    checkInverse(settings, resolution, magnification);
     const std::vector<Variant> variants{denseInverse(settings, resolution, magnification),
                                         algorithmII(settings, resolution, magnification, false),
                                         algorithmII(settings, resolution, magnification, true)};
