@@ -32,6 +32,7 @@ namespace {
 
 using namespace bandvox;
 using benchmarks::DenseTransform;
+using benchmarks::measure;
 using benchmarks::Measurement;
 using benchmarks::Variant;
 using Callback = std::function<void()>;
@@ -172,8 +173,19 @@ void checkInverse(const Settings& settings, int resolution, int magnification) {
     if (different > dense.size() / 10000) throw std::runtime_error("the crossings differ");
 }
 
+// Runs a check where threads may be started: not here, where processes are made.
+void checkInChild(const std::function<void()>& check) {
+    measure({{"comparison",
+              [&](const Callback& begin, const Callback& end) {
+                  begin();
+                  check();
+                  end();
+              }}},
+            1);
+}
+
 void compareForward(const Settings& settings, int samples, int resolution) {
-    checkForward(settings, samples, resolution);
+    checkInChild([&] { checkForward(settings, samples, resolution); });
     const std::vector<Variant> variants{denseForward(settings, samples, resolution),
                                         algorithmI(settings, samples, resolution)};
     report("R = " + std::to_string(samples) + ", N = " + std::to_string(resolution), variants,
@@ -181,7 +193,7 @@ void compareForward(const Settings& settings, int samples, int resolution) {
 }
 
 void compareInverse(const Settings& settings, int resolution, int magnification) {
-    checkInverse(settings, resolution, magnification);
+    checkInChild([&] { checkInverse(settings, resolution, magnification); });
     const std::vector<Variant> variants{denseInverse(settings, resolution, magnification),
                                         algorithmII(settings, resolution, magnification, false),
                                         algorithmII(settings, resolution, magnification, true)};
