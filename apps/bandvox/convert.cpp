@@ -36,6 +36,7 @@ struct ConvertRequest {
     std::filesystem::path output;
     bool isSampled = false;  ///< by the sampled route
     bool isToleranceAsked = false;
+    Overlap overlap = Overlap::Union;
     FieldDensityOptions field;  ///< `density` of it holds for the exact route, too
     VdbWriteOptions write;
 };
@@ -93,15 +94,17 @@ ConvertRequest parseConvert(const CommandLine& line) {
     density.iso =
         line.number("iso", {.low = 0, .high = 1, .lowOpen = true, .highOpen = true}, density.iso);
     density.clamp = line.has("clamp");
+    request.overlap = static_cast<Overlap>(line.choice("overlap", {"union", "sum"}, 0));
+    density.sumOverlaps = request.overlap == Overlap::Sum;
 
     request.write.half = line.has("half");
     request.write.compression = readCompression(line);
     return request;
 }
 
-Solid loadSolid(CommandRun& run, const std::string& input) {
+Solid loadSolid(CommandRun& run, const std::string& input, Overlap overlap) {
     if (!isShape(input)) {
-        SolidMesh mesh = loadSolidMesh(run, input);
+        SolidMesh mesh = loadSolidMesh(run, input, overlap);
         return {std::move(mesh.source), mesh.holesCapped};
     }
     Solid solid{makeShapeBoundary(input), 0};
@@ -170,7 +173,7 @@ void sayResult(CommandRun& run, const ConvertRequest& request, const DensityResu
 
 DensityResult toDensity(CommandRun& run, const ConvertRequest& request) {
     if (!request.isSampled) {
-        const Solid solid = loadSolid(run, request.input);
+        const Solid solid = loadSolid(run, request.input, request.overlap);
         DensityResult result =
             surfaceToDensity(*solid.source, request.field.density, run.progress());
         result.metadata.holesCapped = solid.holesCapped;
@@ -248,6 +251,10 @@ const CommandTable& convertTable() {
                 {"oversample", 0, "P", std::to_string(FieldDensityOptions().oversample),
                  "Samples along a voxel's side on the sampled route, 1 to 64; an even number has "
                  "its error measured.",
+                 filter},
+                {"overlap", 0, "KIND", "union",
+                 "Where shells of a mesh overlap. union: inside is inside. sum: densities add up, so "
+                 "that near parts blend into each other.",
                  filter},
                 {"clamp", 0, "", "", "Limit the density to 0 .. 1, which cuts off ringing.",
                  filter},

@@ -5,6 +5,7 @@
 #include <bandvox/source/close_mesh.h>
 #include <bandvox/source/read_mesh.h>
 #include <bandvox/source/shapes.h>
+#include <bandvox/source/unite_shells.h>
 
 #include <nlohmann/json.hpp>
 
@@ -50,6 +51,18 @@ void sayRepairs(CommandRun& run, const CloseMeshReport& report) {
     sayHoles(run, report.holes);
 }
 
+void sayUnion(CommandRun& run, const UnionReport& report) {
+    run.count("triangle_meetings", report.meetings);
+    run.count("triangles_dropped", report.trianglesDropped);
+    if (report.meetings == 0 && report.trianglesDropped == 0) return;
+    const auto count = [](std::size_t n, const char* one, const char* many) {
+        return formatCount(static_cast<std::int64_t>(n), one, many);
+    };
+    run.say("union    " + count(report.meetings, "pair", "pairs") + " of triangles meet, " +
+            count(report.trianglesCut, "triangle", "triangles") + " cut up, " +
+            count(report.trianglesDropped, "triangle", "triangles") + " dropped");
+}
+
 std::string meshOrShape() {
     return "mesh (" + joined(meshExtensions(), " ") +
            ") or a built-in shape (shape:" + joined(shapeNames(), " shape:") + ")";
@@ -72,7 +85,7 @@ void requireMeshOrShape(const std::string& verb, const std::string& input) {
                 "cannot " + verb + " '" + input + "': " + found + "; expected a " + meshOrShape());
 }
 
-SolidMesh loadSolidMesh(CommandRun& run, const std::string& input) {
+SolidMesh loadSolidMesh(CommandRun& run, const std::string& input, Overlap overlap) {
     const std::filesystem::path path = input;
     MeshFile file = readMesh(path, run.progress());
     run.say("read     " + path.string() + ": " +
@@ -90,8 +103,14 @@ SolidMesh loadSolidMesh(CommandRun& run, const std::string& input) {
     sayRepairs(run, closed.report);
     run.count("holes_capped", closed.report.holes.size());
     run.warn(closed.report.warnings, ErrorKind::Input);
-    return {std::make_unique<MeshSource>(path.filename().string(), std::move(closed.mesh)),
-            static_cast<int>(closed.report.holes.size())};
+    const auto holes = static_cast<int>(closed.report.holes.size());
+    if (overlap == Overlap::Union) {
+        UnitedMesh united = uniteShells(std::move(closed.mesh), run.progress());
+        sayUnion(run, united.report);
+        run.warn(united.report.warnings, ErrorKind::Input);
+        closed.mesh = std::move(united.mesh);
+    }
+    return {std::make_unique<MeshSource>(path.filename().string(), std::move(closed.mesh)), holes};
 }
 
 }  // namespace bandvox::app

@@ -23,7 +23,10 @@ struct SolidMesh {
     int holesCapped = 0;
 };
 
-/// Reads a mesh and closes it; says and counts what was found and done.
-SolidMesh loadSolidMesh(CommandRun& run, const std::string& input);
+/// What becomes of shells that overlap.
+enum class Overlap { Union, Sum };
+
+/// Reads a mesh and makes it the boundary of a solid; says and counts what was found and done.
+SolidMesh loadSolidMesh(CommandRun& run, const std::string& input, Overlap overlap);
 
 }  // namespace bandvox::app

@@ -54,7 +54,7 @@ VoxelizedSolid voxelize(CommandRun& run, const VoxelizeRequest& request) {
         return {fieldToVoxels(*field, request.voxels, run.progress()),
                 makeShapeBoundary(request.input)->volume()};
     }
-    const SolidMesh mesh = loadSolidMesh(run, request.input);
+    const SolidMesh mesh = loadSolidMesh(run, request.input, Overlap::Union);
     return {meshToVoxels(*mesh.source, request.voxels, run.progress()), mesh.source->volume()};
 }
 

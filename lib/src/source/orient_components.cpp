@@ -1,5 +1,6 @@
 #include "source/orient_components.h"
 
+#include "source/directed_edges.h"
 #include "source/no_index.h"
 
 #include <algorithm>
@@ -8,57 +9,6 @@
 
 namespace bandvox {
 namespace {
-
-/// Directed edges: number 3·t + k runs from corner k of triangle t to the next.
-class DirectedEdges {
-  public:
-    explicit DirectedEdges(const Mesh& mesh) : mMesh(mesh) {}
-
-    std::size_t count() const { return 3 * mMesh.triangles.size(); }
-    std::uint32_t from(std::uint32_t e) const { return mMesh.triangles[e / 3][e % 3]; }
-    std::uint32_t to(std::uint32_t e) const { return mMesh.triangles[e / 3][(e + 1) % 3]; }
-    std::uint32_t low(std::uint32_t e) const { return std::min(from(e), to(e)); }
-    std::uint32_t high(std::uint32_t e) const { return std::max(from(e), to(e)); }
-    bool rises(std::uint32_t e) const { return from(e) < to(e); }
-
-  private:
-    const Mesh& mMesh;
-};
-
-/// All directed edges, those of equal ends side by side.
-std::vector<std::uint32_t> groupEdges(const DirectedEdges& edges, std::size_t pointCount) {
-    // Collect them by their lower end, then sort the few of each point.
-    std::vector<std::size_t> start(pointCount + 1, 0);
-    const auto edgeCount = static_cast<std::uint32_t>(edges.count());
-    for (std::uint32_t e = 0; e < edgeCount; ++e) ++start[edges.low(e) + 1];
-    for (std::size_t i = 0; i < pointCount; ++i) start[i + 1] += start[i];
-    std::vector<std::uint32_t> order(edgeCount);
-    std::vector<std::size_t> cursor = start;
-    for (std::uint32_t e = 0; e < edgeCount; ++e) order[cursor[edges.low(e)]++] = e;
-    for (std::size_t i = 0; i < pointCount; ++i) {
-        std::sort(order.begin() + static_cast<std::ptrdiff_t>(start[i]),
-                  order.begin() + static_cast<std::ptrdiff_t>(start[i + 1]),
-                  [&](std::uint32_t a, std::uint32_t b) {
-                      return std::pair(edges.high(a), a) < std::pair(edges.high(b), b);
-                  });
-    }
-    return order;
-}
-
-/// Calls visit(begin, end) for each run of equal edges in `order`.
-template <typename Visit>
-void forEachGroup(const DirectedEdges& edges, const std::vector<std::uint32_t>& order,
-                  const Visit& visit) {
-    for (std::size_t begin = 0; begin < order.size();) {
-        std::size_t end = begin + 1;
-        while (end < order.size() && edges.low(order[end]) == edges.low(order[begin]) &&
-               edges.high(order[end]) == edges.high(order[begin])) {
-            ++end;
-        }
-        visit(begin, end);
-        begin = end;
-    }
-}
 
 /// Walks over the neighbours of triangles, and decides which to flip.
 class Walk {

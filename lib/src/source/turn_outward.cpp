@@ -2,6 +2,7 @@
 
 #include "source/box_tree.h"
 #include "source/compensated_sum.h"
+#include "source/ray_crossing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,34 +55,6 @@ std::vector<Piece> measurePieces(const Mesh& mesh, const MeshComponents& compone
     return pieces;
 }
 
-/// How often the ray from p towards +x leaves through the triangle: 1, 0, or -1 for entering.
-///
-/// Seen along x, edges are taken to hold the point at one end and not the other, and the side
-/// of an edge is computed alike for both triangles that share it; so a ray that meets an edge or
-/// a corner still crosses a closed surface exactly once.
-int crossing(const Vec3d& p, const std::array<Vec3d, 3>& corner) {
-    int winding = 0;
-    for (int i = 0; i < 3; ++i) {
-        const Vec3d* lower = &corner[i];
-        const Vec3d* upper = &corner[(i + 1) % 3];
-        if ((lower->y() <= p.y()) == (upper->y() <= p.y())) continue;
-        const bool rises = lower->y() <= p.y();
-        if (!rises) std::swap(lower, upper);
-        const double side = (upper->y() - lower->y()) * (p.z() - lower->z()) -
-                            (upper->z() - lower->z()) * (p.y() - lower->y());
-        if (side > 0.0) winding += rises ? 1 : -1;
-    }
-    if (winding == 0) return 0;
-
-    // Compare the depth of the triangle's plane with that of the point.
-    const Vec3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-    const double height = normal.dot(corner[0] - p);
-    const bool ahead = normal.x() != 0.0
-                           ? height / normal.x() > 0.0
-                           : corner[0].x() + corner[1].x() + corner[2].x() > 3.0 * p.x();
-    return ahead ? winding : 0;
-}
-
 /// Finds which closed pieces hold a point.
 class Containment {
   public:
@@ -102,7 +75,7 @@ class Containment {
         mTree.visitAlongX(point, [&](std::uint32_t t) {
             const std::uint32_t other = mComponents.ofTriangle[t];
             if (other != c && mPieces[other].box.isInside(mPieces[c].box)) {
-                winding[other] += crossing(point, corners(t));
+                winding[other] += rayCrossing(point, corners(t));
             }
         });
         std::size_t result = c;

@@ -20,6 +20,7 @@ struct DensityOptions {
     int tile = 0;              ///< side of the cube that one FFT filters, voxels, even, up to 512;
                                ///< 0 chooses
     bool clamp = false;        ///< limit the density to [0, 1] (cuts off ringing)
+    bool sumOverlaps = false;  ///< exact route: let shells that overlap add up beyond 1
     double iso = 0.5;          ///< density that is the surface, in (0, 1); stored for later stages
 };
 

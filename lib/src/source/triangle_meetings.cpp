@@ -1,0 +1,239 @@
+#include "source/triangle_meetings.h"
+
+#include <bandvox/core/parallel.h>
+
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/box_intersection_d.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+namespace bandvox {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
+using Pair = std::pair<std::uint32_t, std::uint32_t>;
+
+template <typename K>
+typename K::Point_3 pointOf(const Mesh& mesh, std::uint32_t point) {
+    const openvdb::Vec3d& p = mesh.points[point];
+    return {p.x(), p.y(), p.z()};
+}
+
+template <typename K>
+typename K::Triangle_3 triangleOf(const Mesh& mesh, std::uint32_t triangle) {
+    const openvdb::Vec3I& t = mesh.triangles[triangle];
+    return {pointOf<K>(mesh, t[0]), pointOf<K>(mesh, t[1]), pointOf<K>(mesh, t[2])};
+}
+
+/// Decides which of two triangles whose boxes meet do so themselves.
+class MeetingTest {
+  public:
+    explicit MeetingTest(const Mesh& mesh) : mMesh(mesh), mNoArea(mesh.triangles.size()) {
+        parallelFor(blocks(mNoArea.size()), [&](std::int64_t block) {
+            forBlock(block, mNoArea.size(), [&](std::size_t i) {
+                mNoArea[i] = hasNoArea(mesh, static_cast<std::uint32_t>(i)) ? 1 : 0;
+            });
+        });
+    }
+
+    std::optional<TriangleMeeting> operator()(const Pair& pair) const {
+        const auto [a, b] = pair;
+        if (mNoArea[a] != 0 || mNoArea[b] != 0) {
+            // They bring no area of their own, but a point on the other's edge.
+            if (mNoArea[a] != 0 && mNoArea[b] != 0) return std::nullopt;
+            return touchesLine(a, b) ? std::optional(TriangleMeeting{a, b, false}) : std::nullopt;
+        }
+        const Shared shared = sharedCorners(a, b);
+        switch (shared.count) {
+            case 0:
+                return apart(a, b);
+            case 1:
+                return aroundCorner(a, b, shared);
+            case 2:
+                return aroundEdge(a, b, shared);
+            default:
+                return TriangleMeeting{a, b, true};
+        }
+    }
+
+    static std::int64_t blocks(std::size_t count) {
+        return static_cast<std::int64_t>((count + kBlock - 1) / kBlock);
+    }
+
+    template <typename Visit>
+    static void forBlock(std::int64_t block, std::size_t count, const Visit& visit) {
+        const std::size_t begin = static_cast<std::size_t>(block) * kBlock;
+        for (std::size_t i = begin; i < std::min(begin + kBlock, count); ++i) visit(i);
+    }
+
+  private:
+    static constexpr std::size_t kBlock = 4096;
+
+    /// Corners, by their place in either triangle, that two triangles have in common.
+    struct Shared {
+        int count = 0;
+        std::array<int, 3> inA{}, inB{};
+    };
+
+    Shared sharedCorners(std::uint32_t a, std::uint32_t b) const {
+        Shared shared;
+        for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < 3; ++j) {
+                if (mMesh.triangles[a][i] != mMesh.triangles[b][j]) continue;
+                shared.inA[shared.count] = i;
+                shared.inB[shared.count++] = j;
+            }
+        }
+        return shared;
+    }
+
+    Kernel::Point_3 corner(std::uint32_t triangle, int i) const {
+        return pointOf<Kernel>(mMesh, mMesh.triangles[triangle][i % 3]);
+    }
+
+    CGAL::Orientation side(std::uint32_t triangle, const Kernel::Point_3& point) const {
+        return CGAL::orientation(corner(triangle, 0), corner(triangle, 1), corner(triangle, 2),
+                                 point);
+    }
+
+    /// The side of `triangle` on which all of three points lie, or none.
+    std::optional<CGAL::Orientation> commonSide(
+        std::uint32_t triangle, const std::array<Kernel::Point_3, 3>& points) const {
+        const CGAL::Orientation first = side(triangle, points[0]);
+        for (int i = 1; i < 3; ++i) {
+            if (side(triangle, points[i]) != first) return std::nullopt;
+        }
+        return first;
+    }
+
+    std::array<Kernel::Point_3, 3> corners(std::uint32_t t) const {
+        return {corner(t, 0), corner(t, 1), corner(t, 2)};
+    }
+
+    std::optional<TriangleMeeting> apart(std::uint32_t a, std::uint32_t b) const {
+        const auto ofB = commonSide(a, corners(b));
+        if (ofB && *ofB != CGAL::COPLANAR) return std::nullopt;
+        const auto ofA = commonSide(b, corners(a));
+        if (ofA && *ofA != CGAL::COPLANAR) return std::nullopt;
+        if (!CGAL::do_intersect(triangleOf<Kernel>(mMesh, a), triangleOf<Kernel>(mMesh, b))) {
+            return std::nullopt;
+        }
+        return TriangleMeeting{a, b, ofB.has_value() && overlap(a, b)};
+    }
+
+    std::optional<TriangleMeeting> aroundCorner(std::uint32_t a, std::uint32_t b,
+                                                const Shared& shared) const {
+        const auto sides = [&](std::uint32_t of, std::uint32_t other, int common) {
+            return std::pair(side(of, corner(other, common + 1)),
+                             side(of, corner(other, common + 2)));
+        };
+        const auto [b1, b2] = sides(a, b, shared.inB[0]);
+        if (b1 == b2 && b1 != CGAL::COPLANAR) return std::nullopt;
+        const auto [a1, a2] = sides(b, a, shared.inA[0]);
+        if (a1 == a2 && a1 != CGAL::COPLANAR) return std::nullopt;
+        // Being convex, what they have in common is the corner alone or reaches to where one of the
+        // edges opposite it meets the other triangle.
+        if (!edgeMeets(b, shared.inB[0], a) && !edgeMeets(a, shared.inA[0], b)) return std::nullopt;
+        const bool coplanar = b1 == b2 && b1 == CGAL::COPLANAR;
+        return TriangleMeeting{a, b, coplanar && overlap(a, b)};
+    }
+
+    std::optional<TriangleMeeting> aroundEdge(std::uint32_t a, std::uint32_t b,
+                                              const Shared& shared) const {
+        const auto opposite = [](const std::array<int, 3>& common) {
+            return 3 - common[0] - common[1];
+        };
+        const Kernel::Point_3 apexB = corner(b, opposite(shared.inB));
+        if (side(a, apexB) != CGAL::COPLANAR) return std::nullopt;
+        const CGAL::Orientation fold =
+            CGAL::coplanar_orientation(corner(a, shared.inA[0]), corner(a, shared.inA[1]),
+                                       corner(a, opposite(shared.inA)), apexB);
+        return fold == CGAL::POSITIVE ? std::optional(TriangleMeeting{a, b, true}) : std::nullopt;
+    }
+
+    /// True if the edge opposite a corner meets the other triangle.
+    bool edgeMeets(std::uint32_t of, int opposite, std::uint32_t other) const {
+        return CGAL::do_intersect(
+            triangleOf<Kernel>(mMesh, other),
+            Kernel::Segment_3(corner(of, opposite + 1), corner(of, opposite + 2)));
+    }
+
+    /// True if coplanar triangles have an area in common.
+    bool overlap(std::uint32_t a, std::uint32_t b) const {
+        const auto common =
+            CGAL::intersection(triangleOf<Exact>(mMesh, a), triangleOf<Exact>(mMesh, b));
+        return common && boost::get<Exact::Point_3>(&*common) == nullptr &&
+               boost::get<Exact::Segment_3>(&*common) == nullptr;
+    }
+
+    /// True if of two triangles the one without area touches the other.
+    bool touchesLine(std::uint32_t a, std::uint32_t b) const {
+        if (sharedCorners(a, b).count > 0) return true;
+        if (mNoArea[a] == 0) std::swap(a, b);
+        const auto triangle = triangleOf<Kernel>(mMesh, b);
+        for (int i = 0; i < 3; ++i) {
+            const Kernel::Segment_3 edge(corner(a, i), corner(a, i + 1));
+            if (CGAL::do_intersect(triangle, edge)) return true;
+        }
+        return false;
+    }
+
+    const Mesh& mMesh;
+    std::vector<char> mNoArea;
+};
+
+/// Pairs of triangles whose boxes meet.
+std::vector<Pair> findCandidates(const Mesh& mesh) {
+    using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::uint32_t,
+                                                          CGAL::Box_intersection_d::ID_EXPLICIT>;
+    std::vector<Box> boxes;
+    boxes.reserve(mesh.triangles.size());
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        openvdb::BBoxd box;
+        for (int k = 0; k < 3; ++k) box.expand(mesh.points[mesh.triangles[i][k]]);
+        boxes.emplace_back(CGAL::Bbox_3(box.min().x(), box.min().y(), box.min().z(), box.max().x(),
+                                        box.max().y(), box.max().z()),
+                           i);
+    }
+    std::vector<Pair> pairs;
+    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
+        pairs.push_back(std::minmax(a.info(), b.info()));
+    });
+    return pairs;
+}
+
+}  // namespace
+
+bool hasNoArea(const Mesh& mesh, std::uint32_t triangle) {
+    const openvdb::Vec3I& t = mesh.triangles[triangle];
+    return CGAL::collinear(pointOf<Kernel>(mesh, t[0]), pointOf<Kernel>(mesh, t[1]),
+                           pointOf<Kernel>(mesh, t[2]));
+}
+
+std::vector<TriangleMeeting> findMeetings(const Mesh& mesh, Progress& progress) {
+    const std::vector<Pair> candidates = findCandidates(mesh);
+    progress.throwIfInterrupted();
+    const MeetingTest test(mesh);
+    const std::int64_t blocks = MeetingTest::blocks(candidates.size());
+    std::vector<std::vector<TriangleMeeting>> found(static_cast<std::size_t>(blocks));
+    parallelFor(blocks, [&](std::int64_t block) {
+        progress.throwIfInterrupted();
+        MeetingTest::forBlock(block, candidates.size(), [&](std::size_t i) {
+            if (const auto meeting = test(candidates[i])) found[block].push_back(*meeting);
+        });
+    });
+    std::vector<TriangleMeeting> meetings;
+    for (const auto& part : found) meetings.insert(meetings.end(), part.begin(), part.end());
+    std::sort(meetings.begin(), meetings.end(),
+              [](const TriangleMeeting& a, const TriangleMeeting& b) {
+                  return std::pair(a.first, a.second) < std::pair(b.first, b.second);
+              });
+    return meetings;
+}
+
+}  // namespace bandvox
