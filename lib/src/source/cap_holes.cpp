@@ -1,6 +1,7 @@
 #include "source/cap_holes.h"
 
 #include "source/no_index.h"
+#include "source/triangulate_loop.h"
 
 #include <algorithm>
 #include <cassert>
@@ -77,16 +78,25 @@ CappedHole capLoop(const std::vector<std::uint32_t>& loop, std::uint32_t compone
     }
 
     // The cap runs along the loop against the direction of the piece.
-    if (loop.size() == 3) {
-        mesh.triangles.emplace_back(loop[2], loop[1], loop[0]);
+    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        mesh.triangles.emplace_back(c, b, a);
         components.ofTriangle.push_back(component);
+    };
+    if (loop.size() == 3) {
+        add(loop[0], loop[1], loop[2]);
         return hole;
     }
+    std::vector<openvdb::Vec3d> points;
+    for (const std::uint32_t p : loop) points.push_back(mesh.points[p]);
+    const std::vector<openvdb::Vec3I> cap = triangulateLoop(points);
+    for (const openvdb::Vec3I& t : cap) add(loop[t[0]], loop[t[1]], loop[t[2]]);
+    if (!cap.empty()) return hole;
+
+    // Where that fails, a fan closes it all the same.
     const auto center = static_cast<std::uint32_t>(mesh.points.size());
     mesh.points.push_back(hole.center);
     for (std::size_t i = 0; i < loop.size(); ++i) {
-        mesh.triangles.emplace_back(loop[(i + 1) % loop.size()], loop[i], center);
-        components.ofTriangle.push_back(component);
+        add(loop[i], loop[(i + 1) % loop.size()], center);
     }
     return hole;
 }

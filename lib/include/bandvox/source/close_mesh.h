@@ -43,8 +43,8 @@ struct ClosedMesh {
 };
 
 /// Makes a mesh the boundary of a solid: welds points, drops triangles that collapse or appear
-/// twice, makes the orientation of each piece consistent, caps boundary loops by fans about
-/// their centre, turns pieces outward. Triangles that have no area but three corners stay, since
+/// twice, makes the orientation of each piece consistent, caps boundary loops by surfaces of
+/// little area, turns pieces outward. Triangles that have no area but three corners stay, since
 /// the edges of their neighbours find their opposites there.
 ///
 /// A piece is what is connected across edges of exactly two triangles. Of two triangles that
