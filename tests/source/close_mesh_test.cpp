@@ -65,7 +65,7 @@ TEST(CloseMesh, WeldsPointsThatDifferByRounding) {
     EXPECT_EQ(closed.report.components, 1u);
 
     // Without a tolerance each triangle is a piece of its own, and flat once it is closed.
-    EXPECT_EQ(errorOf(mesh, {.weldTolerance = 0.0}), ErrorKind::Result);
+    EXPECT_EQ(errorOf(mesh, {.weldTolerance = 0.0, .crackTolerance = 0.0}), ErrorKind::Result);
 }
 
 TEST(CloseMesh, RemovesPointsThatNoTriangleUses) {

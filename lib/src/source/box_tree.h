@@ -8,7 +8,8 @@
 
 namespace bandvox {
 
-/// A bounding volume hierarchy: finds the boxes of a list that a line parallel to x meets.
+/// A bounding volume hierarchy: finds the boxes of a list that a line parallel to x meets, or that
+/// hold a point.
 class BoxTree {
   public:
     explicit BoxTree(std::vector<openvdb::BBoxd> boxes);
@@ -16,12 +17,30 @@ class BoxTree {
     /// Calls visit(i) for each box i that the ray from `origin` towards +x meets or touches.
     template <typename Visit>
     void visitAlongX(const openvdb::Vec3d& origin, const Visit& visit) const {
-        if (mBoxes.empty()) return;
         const auto meets = [&origin](const openvdb::BBoxd& box) {
             return box.max().x() >= origin.x() && box.min().y() <= origin.y() &&
                    box.max().y() >= origin.y() && box.min().z() <= origin.z() &&
                    box.max().z() >= origin.z();
         };
+        visitWhere(meets, visit);
+    }
+
+    /// Calls visit(i) for each box i that holds the point.
+    template <typename Visit>
+    void visitAround(const openvdb::Vec3d& point, const Visit& visit) const {
+        visitWhere([&point](const openvdb::BBoxd& box) { return box.isInside(point); }, visit);
+    }
+
+  private:
+    struct Node {
+        openvdb::BBoxd box;
+        std::uint32_t begin, end;  ///< its items
+        std::uint32_t right = 0;   ///< second child; the first follows its parent; 0 in a leaf
+    };
+
+    template <typename Meets, typename Visit>
+    void visitWhere(const Meets& meets, const Visit& visit) const {
+        if (mBoxes.empty()) return;
         std::vector<std::uint32_t> pending = {0};
         while (!pending.empty()) {
             const Node& node = mNodes[pending.back()];
@@ -38,13 +57,6 @@ class BoxTree {
             }
         }
     }
-
-  private:
-    struct Node {
-        openvdb::BBoxd box;
-        std::uint32_t begin, end;  ///< its items
-        std::uint32_t right = 0;   ///< second child; the first follows its parent; 0 in a leaf
-    };
 
     void build(std::uint32_t begin, std::uint32_t end);
 

@@ -2,6 +2,7 @@
 #include "source/compensated_sum.h"
 #include "source/orient_components.h"
 #include "source/remove_duplicates.h"
+#include "source/stitch_cracks.h"
 #include "source/turn_outward.h"
 #include "source/weld_points.h"
 
@@ -102,6 +103,20 @@ void requireVolume(const Mesh& mesh) {
     throw Error(ErrorKind::Result, text.str());
 }
 
+void requireTolerance(double tolerance, const char* name) {
+    if (tolerance >= 0.0 && tolerance < 1.0) return;
+    throw Error(ErrorKind::Usage, std::string("the ") + name + " tolerance is " +
+                                      std::to_string(tolerance) +
+                                      "; expected at least 0 and less than 1");
+}
+
+double longestSide(const Mesh& mesh) {
+    openvdb::BBoxd box;
+    for (const Vec3d& p : mesh.points) box.expand(p);
+    const Vec3d size = box.extents();
+    return std::max({size.x(), size.y(), size.z()});
+}
+
 void describe(const MeshComponents& components, const TurnedComponents& turned,
               CloseMeshReport& report) {
     const auto warn = [&report](const std::string& text) { report.warnings.push_back(text); };
@@ -109,6 +124,11 @@ void describe(const MeshComponents& components, const TurnedComponents& turned,
         warn(counted(report.duplicateTriangles, "triangle lies", "triangles lie") +
              " on another with the same corners and " +
              (report.duplicateTriangles == 1 ? "was" : "were") + " dropped");
+    }
+    if (report.crackPoints + report.edgesSplit > 0) {
+        warn("cracks were stitched: " + counted(report.crackPoints, "point", "points") +
+             " joined, " + counted(report.edgesSplit, "edge", "edges") +
+             " split at points that lie on them");
     }
     if (report.nonManifoldEdges > 0) {
         warn(counted(report.nonManifoldEdges, "edge is", "edges are") +
@@ -139,11 +159,8 @@ void describe(const MeshComponents& components, const TurnedComponents& turned,
 }  // namespace
 
 ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progress) {
-    if (!(options.weldTolerance >= 0.0 && options.weldTolerance < 1.0)) {
-        throw Error(ErrorKind::Usage, "the weld tolerance is " +
-                                          std::to_string(options.weldTolerance) +
-                                          "; expected at least 0 and less than 1");
-    }
+    requireTolerance(options.weldTolerance, "weld");
+    requireTolerance(options.crackTolerance, "crack");
     const ProgressStage stage(progress, "close mesh", 4);
     const auto advance = [&progress] {
         progress.advance();
@@ -161,6 +178,11 @@ ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progr
     if (mesh.triangles.empty()) {
         throw Error(ErrorKind::Input, "the mesh has no triangle with an area; expected a solid");
     }
+    const StitchedCracks cracks =
+        stitchCracks(mesh, std::max(options.crackTolerance * longestSide(mesh),
+                                    options.weldTolerance * largestCoordinate(mesh)));
+    report.crackPoints = cracks.pointsJoined;
+    report.edgesSplit = cracks.edgesSplit;
     report.degenerateTriangles += countWithoutArea(mesh);
     advance();
 

@@ -72,22 +72,22 @@ void renumber(Mesh& mesh, const std::vector<std::uint32_t>& newIndex) {
     }
 }
 
-void weldEqualPoints(Mesh& mesh) {
+std::vector<std::uint32_t> weldEqual(std::vector<Vec3d>& points) {
     using Key = std::array<double, 3>;
-    HashTable<Key> table(mesh.points.size());
-    std::vector<std::uint32_t> newIndex(mesh.points.size());
+    HashTable<Key> table(points.size());
+    std::vector<std::uint32_t> newIndex(points.size());
     std::uint32_t count = 0;
-    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-        const Vec3d p = mesh.points[i] + Vec3d(0.0);  // makes -0 a 0, which has other bits
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vec3d p = points[i] + Vec3d(0.0);  // makes -0 a 0, which has other bits
         std::uint32_t& index = table[Key{p.x(), p.y(), p.z()}];
         if (index == kNoIndex) {
             index = count;
-            mesh.points[count++] = p;
+            points[count++] = p;
         }
         newIndex[i] = index;
     }
-    mesh.points.resize(count);
-    renumber(mesh, newIndex);
+    points.resize(count);
+    return newIndex;
 }
 
 /// Finds earlier points near a new one, with a hash of grid cells.
@@ -137,22 +137,22 @@ class NearPoints {
     std::vector<std::uint32_t> mNext;
 };
 
-void weldNearPoints(Mesh& mesh, double tolerance) {
-    NearPoints near(tolerance, mesh.points.size());
-    std::vector<std::uint32_t> newIndex(mesh.points.size());
+std::vector<std::uint32_t> weldNear(std::vector<Vec3d>& points, double tolerance) {
+    NearPoints near(tolerance, points.size());
+    std::vector<std::uint32_t> newIndex(points.size());
     std::uint32_t count = 0;
-    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-        const Vec3d p = mesh.points[i];
-        std::uint32_t index = near.find(p, mesh.points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vec3d p = points[i];
+        std::uint32_t index = near.find(p, points);
         if (index == kNoIndex) {
             near.add(p);
-            mesh.points[count] = p;
+            points[count] = p;
             index = count++;
         }
         newIndex[i] = index;
     }
-    mesh.points.resize(count);
-    renumber(mesh, newIndex);
+    points.resize(count);
+    return newIndex;
 }
 
 }  // namespace
@@ -174,15 +174,23 @@ void removeUnusedPoints(Mesh& mesh) {
 
 std::size_t weldPoints(Mesh& mesh, double tolerance) {
     const std::size_t before = mesh.points.size();
-    weldEqualPoints(mesh);
+    renumber(mesh, weld(mesh.points, tolerance));
+    return before - mesh.points.size();
+}
+
+std::vector<std::uint32_t> weld(std::vector<Vec3d>& points, double tolerance) {
+    std::vector<std::uint32_t> newIndex = weldEqual(points);
 
     // Below the rounding of doubles a tolerance means equality, and cell numbers would overflow.
     double largest = 0.0;
-    for (const Vec3d& p : mesh.points) {
+    for (const Vec3d& p : points) {
         for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(p[axis]));
     }
-    if (tolerance > 1e-15 * largest) weldNearPoints(mesh, tolerance);
-    return before - mesh.points.size();
+    if (tolerance > 1e-15 * largest) {
+        const std::vector<std::uint32_t> ofEqual = weldNear(points, tolerance);
+        for (std::uint32_t& index : newIndex) index = ofEqual[index];
+    }
+    return newIndex;
 }
 
 }  // namespace bandvox

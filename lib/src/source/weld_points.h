@@ -3,6 +3,8 @@
 #include <bandvox/source/mesh.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace bandvox {
 
@@ -13,5 +15,8 @@ void removeUnusedPoints(Mesh& mesh);
 /// stays, in the order they had.
 /// Returns how many points fell together with another.
 std::size_t weldPoints(Mesh& mesh, double tolerance);
+
+/// The same for points alone. Returns the number that each of them has among those that are left.
+std::vector<std::uint32_t> weld(std::vector<openvdb::Vec3d>& points, double tolerance);
 
 }  // namespace bandvox

@@ -14,6 +14,10 @@ struct CloseMeshOptions {
     /// Points nearer than this are one, relative to the largest coordinate; 0 welds equal points
     /// only. The default is two units in the last place of a float.
     double weldTolerance = 2.4e-7;
+
+    /// Cracks that are no wider than this are stitched, relative to the longest side of the mesh's
+    /// box; 0 stitches only where points lie on edges to within rounding.
+    double crackTolerance = 1e-4;
 };
 
 /// One boundary loop that was capped.
@@ -28,6 +32,8 @@ struct CloseMeshReport {
     std::size_t pointsWelded = 0;         ///< points that fell together with another
     std::size_t degenerateTriangles = 0;  ///< no area; dropped if two corners are equal
     std::size_t duplicateTriangles = 0;   ///< same corners as another; dropped
+    std::size_t crackPoints = 0;          ///< points joined across cracks
+    std::size_t edgesSplit = 0;           ///< at points of others that lie on them (T-junctions)
     std::size_t components = 0;           ///< connected pieces
     std::size_t trianglesFlipped = 0;     ///< to agree with their neighbours, or turned outward
     std::size_t componentsTurned = 0;     ///< pieces that were inside out
@@ -43,9 +49,9 @@ struct ClosedMesh {
 };
 
 /// Makes a mesh the boundary of a solid: welds points, drops triangles that collapse or appear
-/// twice, makes the orientation of each piece consistent, caps boundary loops by surfaces of
-/// little area, turns pieces outward. Triangles that have no area but three corners stay, since
-/// the edges of their neighbours find their opposites there.
+/// twice, stitches cracks, makes the orientation of each piece consistent, caps boundary loops by
+/// surfaces of little area, turns pieces outward. Triangles that have no area but three corners
+/// stay, since the edges of their neighbours find their opposites there.
 ///
 /// A piece is what is connected across edges of exactly two triangles. Of two triangles that
 /// cover each other from opposite sides both are dropped, unless most of the mesh is like that:
@@ -54,7 +60,7 @@ struct ClosedMesh {
 /// cavities stay cavities in a mesh that is inside out as a whole.
 /// Throws Error(ErrorKind::Input) if nothing is left, an index is out of range or a coordinate is
 /// not finite; Error(ErrorKind::Result) if what is left encloses no volume (a flat mesh);
-/// Error(ErrorKind::Usage) for a weld tolerance outside [0, 1).
+/// Error(ErrorKind::Usage) for a tolerance outside [0, 1).
 ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options = {},
                      Progress& progress = silentProgress());
 

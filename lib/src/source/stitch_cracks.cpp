@@ -1,0 +1,164 @@
+#include "source/stitch_cracks.h"
+
+#include "source/box_tree.h"
+#include "source/directed_edges.h"
+#include "source/no_index.h"
+#include "source/weld_points.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace bandvox {
+namespace {
+
+using openvdb::Vec3d;
+
+// What is joined may bring more to lie on an edge.
+constexpr int kMostRounds = 4;
+
+/// Directed edges, by their numbers, that only one triangle has.
+std::vector<std::uint32_t> boundaryEdges(const Mesh& mesh) {
+    const DirectedEdges edges(mesh);
+    const std::vector<std::uint32_t> order = groupEdges(edges, mesh.points.size());
+    std::vector<std::uint32_t> boundary;
+    forEachGroup(edges, order, [&](std::size_t begin, std::size_t end) {
+        if (end - begin == 1) boundary.push_back(order[begin]);
+    });
+    std::sort(boundary.begin(), boundary.end());
+    return boundary;
+}
+
+std::vector<std::uint32_t> pointsOf(const Mesh& mesh, const std::vector<std::uint32_t>& boundary) {
+    const DirectedEdges edges(mesh);
+    std::vector<std::uint32_t> points;
+    for (const std::uint32_t e : boundary) {
+        points.push_back(edges.from(e));
+        points.push_back(edges.to(e));
+    }
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    return points;
+}
+
+/// Makes boundary points that are near each other one. Returns how many fell together.
+std::size_t joinPoints(Mesh& mesh, const std::vector<std::uint32_t>& points, double tolerance) {
+    std::vector<Vec3d> places;
+    for (const std::uint32_t p : points) places.push_back(mesh.points[p]);
+    const std::vector<std::uint32_t> joined = weld(places, tolerance);
+    const std::size_t fewer = points.size() - places.size();
+    if (fewer == 0) return 0;
+    std::vector<std::uint32_t> first(places.size(), kNoIndex);  // of those that became one
+    std::vector<std::uint32_t> newIndex(mesh.points.size(), kNoIndex);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (first[joined[i]] == kNoIndex) first[joined[i]] = points[i];
+        newIndex[points[i]] = first[joined[i]];
+    }
+    for (openvdb::Vec3I& t : mesh.triangles) {
+        for (int k = 0; k < 3; ++k) {
+            if (newIndex[t[k]] != kNoIndex) t[k] = newIndex[t[k]];
+        }
+    }
+    std::erase_if(mesh.triangles, [](const openvdb::Vec3I& t) {
+        return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+    });
+    return fewer;
+}
+
+/// A point on an edge, and how far along it lies, 0 to 1.
+struct OnEdge {
+    std::uint32_t edge;
+    double along;
+    std::uint32_t point;
+};
+
+/// Boundary points that lie on boundary edges, by edge and from its start to its end.
+std::vector<OnEdge> findOnEdges(const Mesh& mesh, const std::vector<std::uint32_t>& boundary,
+                                double tolerance) {
+    const DirectedEdges edges(mesh);
+    std::vector<openvdb::BBoxd> boxes;
+    for (const std::uint32_t e : boundary) {
+        openvdb::BBoxd box;
+        box.expand(mesh.points[edges.from(e)]);
+        box.expand(mesh.points[edges.to(e)]);
+        box.expand(tolerance);
+        boxes.push_back(box);
+    }
+    const BoxTree tree(std::move(boxes));
+    std::vector<OnEdge> found;
+    for (const std::uint32_t p : pointsOf(mesh, boundary)) {
+        const Vec3d& place = mesh.points[p];
+        tree.visitAround(place, [&](std::uint32_t i) {
+            const std::uint32_t e = boundary[i];
+            if (edges.from(e) == p || edges.to(e) == p) return;
+            const Vec3d& from = mesh.points[edges.from(e)];
+            const Vec3d edge = mesh.points[edges.to(e)] - from;
+            const double length = edge.length();
+            const double along = (place - from).dot(edge) / length;
+            // What is nearer to an end has been joined with it, or is its own neighbour.
+            if (!(along > tolerance && along < length - tolerance)) return;
+            if ((place - from - along / length * edge).length() > tolerance) return;
+            found.push_back({e, along / length, p});
+        });
+    }
+    std::sort(found.begin(), found.end(), [](const OnEdge& a, const OnEdge& b) {
+        return std::tuple(a.edge, a.along, a.point) < std::tuple(b.edge, b.along, b.point);
+    });
+    return found;
+}
+
+/// Splits edges where points lie on them. Returns how many edges that were.
+std::size_t splitEdges(Mesh& mesh, const std::vector<OnEdge>& onEdges) {
+    // Of a triangle's edges one at a time: the next round finds the others.
+    std::size_t split = 0;
+    std::uint32_t last = kNoIndex;
+    for (std::size_t begin = 0; begin < onEdges.size();) {
+        const std::uint32_t edge = onEdges[begin].edge;
+        std::size_t end = begin;
+        while (end < onEdges.size() && onEdges[end].edge == edge) ++end;
+        if (std::exchange(last, edge / 3) != edge / 3) {
+            const openvdb::Vec3I whole = mesh.triangles[edge / 3];
+            const std::uint32_t to = whole[(edge + 1) % 3], apex = whole[(edge + 2) % 3];
+            std::uint32_t from = whole[edge % 3];
+            bool isFirst = true;
+            const auto add = [&](std::uint32_t next) {
+                const openvdb::Vec3I part(from, next, apex);
+                if (std::exchange(isFirst, false)) {
+                    mesh.triangles[edge / 3] = part;
+                } else {
+                    mesh.triangles.push_back(part);
+                }
+                from = next;
+            };
+            for (std::size_t i = begin; i < end; ++i) {
+                if (onEdges[i].point != apex) add(onEdges[i].point);
+            }
+            add(to);
+            ++split;
+        }
+        begin = end;
+    }
+    return split;
+}
+
+}  // namespace
+
+StitchedCracks stitchCracks(Mesh& mesh, double tolerance) {
+    StitchedCracks stitched;
+    for (int round = 0; round < kMostRounds; ++round) {
+        std::vector<std::uint32_t> boundary = boundaryEdges(mesh);
+        if (boundary.empty()) break;
+        const std::size_t joined = joinPoints(mesh, pointsOf(mesh, boundary), tolerance);
+        if (joined > 0) boundary = boundaryEdges(mesh);
+        const std::size_t split = splitEdges(mesh, findOnEdges(mesh, boundary, tolerance));
+        stitched.pointsJoined += joined;
+        stitched.edgesSplit += split;
+        if (split == 0) break;
+    }
+    removeUnusedPoints(mesh);
+    return stitched;
+}
+
+}  // namespace bandvox

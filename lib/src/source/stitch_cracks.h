@@ -1,0 +1,21 @@
+#pragma once
+
+#include <bandvox/source/mesh.h>
+
+#include <cstddef>
+
+namespace bandvox {
+
+/// What stitchCracks did.
+struct StitchedCracks {
+    std::size_t pointsJoined = 0;  ///< that fell together with another across a crack
+    std::size_t edgesSplit = 0;    ///< at points of other triangles that lie on them: T-junctions
+};
+
+/// Closes cracks between triangles, as far as they are no wider than `tolerance` (world units):
+/// points on the mesh's boundary that are near each other become one, and boundary edges are split
+/// where other boundary points lie on them. Points move by no more than the tolerance; edges
+/// shorter than it may collapse, and triangles with them.
+StitchedCracks stitchCracks(Mesh& mesh, double tolerance);
+
+}  // namespace bandvox
