@@ -1,5 +1,6 @@
 #include "grid_report.h"
 
+#include "report_words.h"
 #include "words.h"
 
 #include <nlohmann/json.hpp>
@@ -18,10 +19,6 @@ bool isReportedElsewhere(const std::string& name) {
     using openvdb::GridBase;
     return name == GridBase::META_GRID_NAME || name == GridBase::META_GRID_CLASS ||
            name == GridBase::META_SAVE_HALF_FLOAT;
-}
-
-Json toJson(const openvdb::Vec3d& vector) {
-    return Json::array({vector.x(), vector.y(), vector.z()});
 }
 
 Json toJson(const openvdb::Coord& coord) {
@@ -45,31 +42,6 @@ Json toJson(const openvdb::Metadata& metadata) {
         return toJson(m->value());
     }
     return metadata.str();
-}
-
-/// A JSON value as one would say it.
-std::string inWords(const Json& value) {
-    if (value.is_string()) return printable(value.get<std::string>());
-    if (value.is_number_float()) return formatNumber(value.get<double>(), 8);
-    if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-    if (value.is_array()) {
-        std::vector<std::string> parts;
-        for (const Json& part : value) parts.push_back(inWords(part));
-        return "(" + joined(parts, ", ") + ")";
-    }
-    return value.dump();
-}
-
-std::string boundsInWords(const Json& bounds) {
-    if (bounds.is_null()) return "empty";
-    return inWords(bounds["min"]) + " to " + inWords(bounds["max"]);
-}
-
-void appendLine(std::string& out, const std::string& name, const std::string& value) {
-    constexpr std::size_t kNameWidth = 16;
-    out += "  " + name;
-    out += std::string(name.size() < kNameWidth ? kNameWidth - name.size() : 1, ' ');
-    out += value + '\n';
 }
 
 void appendBlock(std::string& out, const std::string& name, const Json& values) {

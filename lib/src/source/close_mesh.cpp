@@ -83,26 +83,6 @@ std::size_t countWithoutArea(const Mesh& mesh) {
         }));
 }
 
-void requireVolume(const Mesh& mesh) {
-    openvdb::BBoxd box;
-    for (const Vec3d& p : mesh.points) box.expand(p);
-    CompensatedSum volume;
-    CompensatedSum area;
-    for (const Vec3I& t : mesh.triangles) {
-        const Vec3d a = mesh.points[t[0]] - box.getCenter();
-        const Vec3d normal =
-            (mesh.points[t[1]] - mesh.points[t[0]]).cross(mesh.points[t[2]] - mesh.points[t[0]]);
-        volume.add(a.dot(normal) / 6.0);
-        area.add(0.5 * normal.length());
-    }
-    const double size = box.extents().length();
-    if (std::abs(volume.value()) > kFlatMesh * area.value() * size) return;
-    std::ostringstream text;
-    text << "the mesh is flat: it encloses a volume of " << volume.value() << " with an area of "
-         << area.value() << " and a size of " << size << "; expected a solid";
-    throw Error(ErrorKind::Result, text.str());
-}
-
 void requireTolerance(double tolerance, const char* name) {
     if (tolerance >= 0.0 && tolerance < 1.0) return;
     throw Error(ErrorKind::Usage, std::string("the ") + name + " tolerance is " +
@@ -158,6 +138,31 @@ void describe(const MeshComponents& components, const TurnedComponents& turned,
 
 }  // namespace
 
+void requireVolume(const Mesh& mesh, const CloseMeshReport& report) {
+    openvdb::BBoxd box;
+    for (const Vec3d& p : mesh.points) box.expand(p);
+    CompensatedSum volume;
+    CompensatedSum area;
+    for (const Vec3I& t : mesh.triangles) {
+        const Vec3d a = mesh.points[t[0]] - box.getCenter();
+        const Vec3d normal =
+            (mesh.points[t[1]] - mesh.points[t[0]]).cross(mesh.points[t[2]] - mesh.points[t[0]]);
+        volume.add(a.dot(normal) / 6.0);
+        area.add(0.5 * normal.length());
+    }
+    const double size = box.extents().length();
+    if (std::abs(volume.value()) > kFlatMesh * area.value() * size) return;
+    std::ostringstream text;
+    if (report.oneSided > 0) {
+        text << "the mesh is one-sided, as a Möbius strip is: there is no inside to it; it";
+    } else {
+        text << "the mesh is flat: it";
+    }
+    text << " encloses a volume of " << volume.value() << " with an area of " << area.value()
+         << " and a size of " << size << "; expected a solid";
+    throw Error(ErrorKind::Result, text.str());
+}
+
 ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progress) {
     requireTolerance(options.weldTolerance, "weld");
     requireTolerance(options.crackTolerance, "crack");
@@ -189,6 +194,7 @@ ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progr
     // Make the pieces consistent and closed.
     MeshComponents components = orientComponents(mesh);
     report.components = components.count;
+    report.oneSided = components.oneSided;
     report.nonManifoldEdges = components.nonManifoldEdges;
     advance();
     report.holes = capHoles(mesh, components);
@@ -198,7 +204,7 @@ ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progr
     const TurnedComponents turned = turnOutward(mesh, components);
     report.componentsTurned = turned.components;
     report.trianglesFlipped = components.trianglesFlipped + turned.triangles;
-    requireVolume(mesh);
+    if (options.requireVolume) requireVolume(mesh, report);
     describe(components, turned, report);
     advance();
     closed.mesh = std::move(mesh);

@@ -18,6 +18,8 @@ struct CloseMeshOptions {
     /// Cracks that are no wider than this are stitched, relative to the longest side of the mesh's
     /// box; 0 stitches only where points lie on edges to within rounding.
     double crackTolerance = 1e-4;
+
+    bool requireVolume = true;  ///< refuse what encloses none
 };
 
 /// One boundary loop that was capped.
@@ -38,6 +40,7 @@ struct CloseMeshReport {
     std::size_t trianglesFlipped = 0;     ///< to agree with their neighbours, or turned outward
     std::size_t componentsTurned = 0;     ///< pieces that were inside out
     std::size_t nonManifoldEdges = 0;     ///< edges of more than two triangles
+    std::size_t oneSided = 0;             ///< pieces on which inside and outside cannot be told
     std::vector<CappedHole> holes;        ///< in order of falling perimeter
     std::vector<std::string> warnings;    ///< in words, for the user
 };
@@ -59,9 +62,14 @@ struct ClosedMesh {
 /// A piece inside another keeps its orientation relative to the outermost piece around it, so
 /// cavities stay cavities in a mesh that is inside out as a whole.
 /// Throws Error(ErrorKind::Input) if nothing is left, an index is out of range or a coordinate is
-/// not finite; Error(ErrorKind::Result) if what is left encloses no volume (a flat mesh);
+/// not finite; Error(ErrorKind::Result) if what is left encloses no volume (a flat mesh, or one
+/// with a single side);
 /// Error(ErrorKind::Usage) for a tolerance outside [0, 1).
 ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options = {},
                      Progress& progress = silentProgress());
+
+/// Throws Error(ErrorKind::Result), which says why, if a closed mesh encloses no volume. `report`
+/// is that of closing it.
+void requireVolume(const Mesh& mesh, const CloseMeshReport& report);
 
 }  // namespace bandvox

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "command_run.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+
+namespace bandvox::app {
+
+/// The health of a mesh file: what it holds, and what would be done to make it a solid.
+///
+/// Keys: file, file_bytes, points, triangles, objects, bounds ({min, max}, world), pieces,
+/// points_welded, triangles_without_area, duplicate_triangles, crack_points, edges_split,
+/// triangles_flipped, pieces_turned, one_sided_pieces, non_manifold_edges, holes ([{edges,
+/// perimeter, center}], largest first), triangle_meetings (pairs that cut, touch or cover each
+/// other), triangles_inside (dropped for the union), area and volume (world, of the solid that
+/// comes of it; null if none does), closed (true if nothing had to be closed, turned or united),
+/// warnings, and problem (why no solid comes of it, else null). Throws Error(ErrorKind::Input) if
+/// the file cannot be read.
+nlohmann::ordered_json meshReport(CommandRun& run, const std::string& input);
+
+/// The same for people.
+std::string meshReportInWords(const nlohmann::ordered_json& report);
+
+}  // namespace bandvox::app
