@@ -12,6 +12,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+using app::toJson;
+
 constexpr std::string_view kOwnPrefix = "bandvox_";
 
 /// True for metadata that say again what the report says under another key.

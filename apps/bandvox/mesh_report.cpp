@@ -53,15 +53,18 @@ void addClosing(const CloseMeshReport& closing, Json& report) {
 
 // Makes a solid of it, as far as that goes.
 void addSolid(CommandRun& run, Mesh mesh, Json& report) {
-    ClosedMesh closed = closeMesh(std::move(mesh), {.requireVolume = false}, run.progress());
+    ClosedMesh closed = closeMesh(std::move(mesh), {.requireSolid = false}, run.progress());
     addClosing(closed.report, report);
+    if (!closed.report.problem.empty()) {
+        report["problem"] = closed.report.problem;
+        return;
+    }
     UnitedMesh united = uniteShells(std::move(closed.mesh), run.progress());
     report["triangle_meetings"] = united.report.meetings;
     report["triangles_inside"] = united.report.trianglesDropped;
     for (const std::string& warning : united.report.warnings) {
         report["warnings"].push_back(warning);
     }
-    requireVolume(united.mesh, closed.report);
     const MeshSource source("", std::move(united.mesh));
     report["area"] = source.area();
     report["volume"] = source.volume();

@@ -75,7 +75,7 @@ TEST_F(BadInput, UnknownKind) {
     expectFailure({"render", "shape:cube", "-o", "out.png"}, 3,
                   {"bandvox convert shape:cube -o cube.vdb"});
     expectFailure({"render", "cube.txt", "-o", "out.png"}, 3, {"cube.txt", ".vdb"});
-    expectFailure({"info", "cube.obj"}, 3, {"cube.obj", ".vdb"});
+    expectFailure({"info", "cube.txt"}, 3, {"cube.txt", ".vdb"});
 }
 
 TEST_F(BadInput, EmptyFile) {

@@ -24,6 +24,9 @@ using openvdb::Vec3I;
 /// Volume, relative to area times size, below which a mesh counts as flat.
 constexpr double kFlatMesh = 1e-9;
 
+/// Part of a mesh's area that may be one-sided.
+constexpr double kMostOneSided = 0.5;
+
 /// Height of a triangle, relative to its longest edge, below which it has no area.
 constexpr double kNoHeight = 1e-12;
 
@@ -97,6 +100,51 @@ double longestSide(const Mesh& mesh) {
     return std::max({size.x(), size.y(), size.z()});
 }
 
+/// Why a mesh has no inside, before it is closed: it is one-sided for the most part. Empty if not.
+std::string problemOfSides(const Mesh& mesh, const MeshComponents& components) {
+    if (components.oneSided.empty()) return {};
+    std::vector<char> oneSided(components.count, 0);
+    for (const std::uint32_t c : components.oneSided) oneSided[c] = 1;
+    CompensatedSum all, ofOneSided;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const Vec3I& t = mesh.triangles[i];
+        const Vec3d a = mesh.points[t[0]];
+        const double area = (mesh.points[t[1]] - a).cross(mesh.points[t[2]] - a).length();
+        all.add(area);
+        if (oneSided[components.ofTriangle[i]] != 0) ofOneSided.add(area);
+    }
+    if (ofOneSided.value() <= kMostOneSided * all.value()) return {};
+    return "the mesh is one-sided, as a Möbius strip is: neighbouring triangles cannot agree "
+           "about what is outside, so there is no inside; expected the surface of a solid";
+}
+
+/// Why a closed mesh is no solid: it encloses nothing. Empty if it does.
+std::string problemOfVolume(const Mesh& mesh) {
+    openvdb::BBoxd box;
+    for (const Vec3d& p : mesh.points) box.expand(p);
+    CompensatedSum volume;
+    CompensatedSum area;
+    for (const Vec3I& t : mesh.triangles) {
+        const Vec3d a = mesh.points[t[0]] - box.getCenter();
+        const Vec3d normal =
+            (mesh.points[t[1]] - mesh.points[t[0]]).cross(mesh.points[t[2]] - mesh.points[t[0]]);
+        volume.add(a.dot(normal) / 6.0);
+        area.add(0.5 * normal.length());
+    }
+    const double size = box.extents().length();
+    if (std::abs(volume.value()) > kFlatMesh * area.value() * size) return {};
+    std::ostringstream text;
+    text << "the mesh is flat: it encloses a volume of " << volume.value() << " with an area of "
+         << area.value() << " and a size of " << size << "; expected a solid";
+    return text.str();
+}
+
+void requireNoProblem(const CloseMeshOptions& options, const CloseMeshReport& report) {
+    if (options.requireSolid && !report.problem.empty()) {
+        throw Error(ErrorKind::Result, report.problem);
+    }
+}
+
 void describe(const MeshComponents& components, const TurnedComponents& turned,
               CloseMeshReport& report) {
     const auto warn = [&report](const std::string& text) { report.warnings.push_back(text); };
@@ -114,8 +162,8 @@ void describe(const MeshComponents& components, const TurnedComponents& turned,
         warn(counted(report.nonManifoldEdges, "edge is", "edges are") +
              " shared by more than two triangles");
     }
-    if (components.oneSided > 0) {
-        warn(counted(components.oneSided, "piece is", "pieces are") +
+    if (report.oneSided > 0) {
+        warn(counted(report.oneSided, "piece is", "pieces are") +
              " one-sided, so that inside and outside are not defined there");
     }
     if (components.trianglesFlipped > 0) {
@@ -137,31 +185,6 @@ void describe(const MeshComponents& components, const TurnedComponents& turned,
 }
 
 }  // namespace
-
-void requireVolume(const Mesh& mesh, const CloseMeshReport& report) {
-    openvdb::BBoxd box;
-    for (const Vec3d& p : mesh.points) box.expand(p);
-    CompensatedSum volume;
-    CompensatedSum area;
-    for (const Vec3I& t : mesh.triangles) {
-        const Vec3d a = mesh.points[t[0]] - box.getCenter();
-        const Vec3d normal =
-            (mesh.points[t[1]] - mesh.points[t[0]]).cross(mesh.points[t[2]] - mesh.points[t[0]]);
-        volume.add(a.dot(normal) / 6.0);
-        area.add(0.5 * normal.length());
-    }
-    const double size = box.extents().length();
-    if (std::abs(volume.value()) > kFlatMesh * area.value() * size) return;
-    std::ostringstream text;
-    if (report.oneSided > 0) {
-        text << "the mesh is one-sided, as a Möbius strip is: there is no inside to it; it";
-    } else {
-        text << "the mesh is flat: it";
-    }
-    text << " encloses a volume of " << volume.value() << " with an area of " << area.value()
-         << " and a size of " << size << "; expected a solid";
-    throw Error(ErrorKind::Result, text.str());
-}
 
 ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progress) {
     requireTolerance(options.weldTolerance, "weld");
@@ -194,7 +217,9 @@ ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progr
     // Make the pieces consistent and closed.
     MeshComponents components = orientComponents(mesh);
     report.components = components.count;
-    report.oneSided = components.oneSided;
+    report.oneSided = components.oneSided.size();
+    report.problem = problemOfSides(mesh, components);
+    requireNoProblem(options, report);
     report.nonManifoldEdges = components.nonManifoldEdges;
     advance();
     report.holes = capHoles(mesh, components);
@@ -204,7 +229,8 @@ ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progr
     const TurnedComponents turned = turnOutward(mesh, components);
     report.componentsTurned = turned.components;
     report.trianglesFlipped = components.trianglesFlipped + turned.triangles;
-    if (options.requireVolume) requireVolume(mesh, report);
+    if (report.problem.empty()) report.problem = problemOfVolume(mesh);
+    requireNoProblem(options, report);
     describe(components, turned, report);
     advance();
     closed.mesh = std::move(mesh);

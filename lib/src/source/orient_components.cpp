@@ -42,7 +42,7 @@ class Walk {
                 }
             }
         }
-        if (oneSided) ++mComponents.oneSided;
+        if (oneSided) mComponents.oneSided.push_back(component);
 
         // Keep the orientation that most triangles had.
         if (2 * flips > mTriangles.size()) {

@@ -22,7 +22,7 @@ struct MeshComponents {
                                             ///< by component and start
     std::size_t trianglesFlipped = 0;       ///< to agree with their neighbours
     std::size_t nonManifoldEdges = 0;       ///< edges of more than two triangles
-    std::size_t oneSided = 0;               ///< pieces that cannot be oriented
+    std::vector<std::uint32_t> oneSided;    ///< pieces that cannot be oriented
 };
 
 /// Splits a mesh into pieces connected across edges of exactly two triangles, and turns the

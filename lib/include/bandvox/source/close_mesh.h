@@ -19,7 +19,7 @@ struct CloseMeshOptions {
     /// box; 0 stitches only where points lie on edges to within rounding.
     double crackTolerance = 1e-4;
 
-    bool requireVolume = true;  ///< refuse what encloses none
+    bool requireSolid = true;  ///< throw what keeps it from being a solid, besides reporting it
 };
 
 /// One boundary loop that was capped.
@@ -43,6 +43,7 @@ struct CloseMeshReport {
     std::size_t oneSided = 0;             ///< pieces on which inside and outside cannot be told
     std::vector<CappedHole> holes;        ///< in order of falling perimeter
     std::vector<std::string> warnings;    ///< in words, for the user
+    std::string problem;                  ///< why it bounds no solid; empty if it does
 };
 
 /// A closed mesh, and how it came about.
@@ -67,9 +68,5 @@ struct ClosedMesh {
 /// Error(ErrorKind::Usage) for a tolerance outside [0, 1).
 ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options = {},
                      Progress& progress = silentProgress());
-
-/// Throws Error(ErrorKind::Result), which says why, if a closed mesh encloses no volume. `report`
-/// is that of closing it.
-void requireVolume(const Mesh& mesh, const CloseMeshReport& report);
 
 }  // namespace bandvox
