@@ -121,8 +121,8 @@ DensityResult surfaceToDensity(const BoundarySource& source, const DensityOption
         fillToTolerance(source, plan, layout, filter,
                         std::max(options.tolerance, options.filter.atNyquist()), progress);
     const ColumnStatistics statistics = columns.total();
-    const bool isOverlapping = !options.sumOverlaps &&
-                               findOverlap(source, options, layout, columns.statistics, progress);
+    const bool isOverlapping =
+        !options.sumOverlaps && findOverlap(source, options, layout, columns.statistics, progress);
     if (isOverlapping) result.warnings.push_back(overlapWarning(statistics));
     const bool clamp = isOverlapping || options.clamp;
 

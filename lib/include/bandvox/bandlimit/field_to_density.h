@@ -23,12 +23,12 @@ struct FieldDensityOptions {
 /// Lattice and grid are as those of surfaceToDensity. The tolerance holds for fields about as large
 /// as 1. What the samples cannot tell is measured, for an even P, by the difference from every
 /// second sample, in every tile. Twice that is stored as the sampling error, and is a warning if
-/// above `samplingTolerance`; it may be too little for parts along the lattice that are thinner than
-/// three voxels. For an odd P the error is not known, which is a warning, too. The volume of the
-/// source is not known.
-/// Throws Error(ErrorKind::Usage) for options out of range, Error(ErrorKind::Input) if a voxel
-/// would be smaller than OpenVDB takes, Error(ErrorKind::Memory) before allocating if it would not
-/// fit, Error(ErrorKind::Result) if the grid would be empty, Error(ErrorKind::Interrupted).
+/// above `samplingTolerance`; it may be too little for parts along the lattice that are thinner
+/// than three voxels. For an odd P the error is not known, which is a warning, too. The volume of
+/// the source is not known. Throws Error(ErrorKind::Usage) for options out of range,
+/// Error(ErrorKind::Input) if a voxel would be smaller than OpenVDB takes, Error(ErrorKind::Memory)
+/// before allocating if it would not fit, Error(ErrorKind::Result) if the grid would be empty,
+/// Error(ErrorKind::Interrupted).
 DensityResult fieldToDensity(const FieldSource& source, const FieldDensityOptions& options = {},
                              Progress& progress = silentProgress());
 
