@@ -87,6 +87,7 @@ CappedHole capLoop(const std::vector<std::uint32_t>& loop, std::uint32_t compone
         return hole;
     }
     std::vector<openvdb::Vec3d> points;
+    points.reserve(loop.size());
     for (const std::uint32_t p : loop) points.push_back(mesh.points[p]);
     const std::vector<openvdb::Vec3I> cap = triangulateLoop(points);
     for (const openvdb::Vec3I& t : cap) add(loop[t[0]], loop[t[1]], loop[t[2]]);

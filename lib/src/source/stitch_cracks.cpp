@@ -46,6 +46,7 @@ std::vector<std::uint32_t> pointsOf(const Mesh& mesh, const std::vector<std::uin
 /// Makes boundary points that are near each other one. Returns how many fell together.
 std::size_t joinPoints(Mesh& mesh, const std::vector<std::uint32_t>& points, double tolerance) {
     std::vector<Vec3d> places;
+    places.reserve(points.size());
     for (const std::uint32_t p : points) places.push_back(mesh.points[p]);
     const std::vector<std::uint32_t> joined = weld(places, tolerance);
     const std::size_t fewer = points.size() - places.size();

@@ -19,6 +19,7 @@ constexpr std::size_t kShort = 300;
 std::vector<openvdb::Vec3I> triangulateLoop(const std::vector<openvdb::Vec3d>& loop) {
     using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
     std::vector<Kernel::Point_3> points;
+    points.reserve(loop.size());
     for (const openvdb::Vec3d& p : loop) points.emplace_back(p.x(), p.y(), p.z());
     std::vector<CGAL::Triple<int, int, int>> found;
     CGAL::Polygon_mesh_processing::triangulate_hole_polyline(
@@ -26,6 +27,7 @@ std::vector<openvdb::Vec3I> triangulateLoop(const std::vector<openvdb::Vec3d>& l
         CGAL::parameters::use_delaunay_triangulation(true).do_not_use_cubic_algorithm(
             points.size() > kShort));
     std::vector<openvdb::Vec3I> triangles;
+    triangles.reserve(found.size());
     for (const auto& t : found) triangles.emplace_back(t.first, t.second, t.third);
     return triangles;
 }
