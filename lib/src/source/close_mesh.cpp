@@ -207,8 +207,10 @@ ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progr
         throw Error(ErrorKind::Input, "the mesh has no triangle with an area; expected a solid");
     }
     const StitchedCracks cracks =
-        stitchCracks(mesh, std::max(options.crackTolerance * longestSide(mesh),
-                                    options.weldTolerance * largestCoordinate(mesh)));
+        stitchCracks(mesh,
+                     std::max(options.crackTolerance * longestSide(mesh),
+                              options.weldTolerance * largestCoordinate(mesh)),
+                     progress);
     report.crackPoints = cracks.pointsJoined;
     report.edgesSplit = cracks.edgesSplit;
     report.degenerateTriangles += countWithoutArea(mesh);

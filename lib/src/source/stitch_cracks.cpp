@@ -75,30 +75,62 @@ struct OnEdge {
     std::uint32_t point;
 };
 
+/// A part of an edge, the boundary's number i, from and to these lengths along it.
+struct EdgePart {
+    std::uint32_t i;
+    double begin, end;
+};
+
+/// Edges in parts, so that the boxes around slanting ones stay slim.
+std::vector<EdgePart> cutEdges(const Mesh& mesh, const std::vector<std::uint32_t>& boundary) {
+    constexpr double kPartsOfMesh = 64;
+    const DirectedEdges edges(mesh);
+    openvdb::BBoxd box;
+    for (const Vec3d& p : mesh.points) box.expand(p);
+    const double longest = box.extents().length() / kPartsOfMesh;
+    std::vector<EdgePart> parts;
+    for (std::uint32_t i = 0; i < boundary.size(); ++i) {
+        const std::uint32_t e = boundary[i];
+        const double length = (mesh.points[edges.to(e)] - mesh.points[edges.from(e)]).length();
+        const int count = 1 + static_cast<int>(length / longest);
+        for (int k = 0; k < count; ++k) {
+            parts.push_back({i, length * k / count, length * (k + 1) / count});
+        }
+    }
+    return parts;
+}
+
 /// Boundary points that lie on boundary edges, by edge and from its start to its end.
 std::vector<OnEdge> findOnEdges(const Mesh& mesh, const std::vector<std::uint32_t>& boundary,
-                                double tolerance) {
+                                double tolerance, const Progress& progress) {
     const DirectedEdges edges(mesh);
+    const std::vector<EdgePart> parts = cutEdges(mesh, boundary);
     std::vector<openvdb::BBoxd> boxes;
-    for (const std::uint32_t e : boundary) {
+    boxes.reserve(parts.size());
+    for (const EdgePart& part : parts) {
+        const Vec3d& from = mesh.points[edges.from(boundary[part.i])];
+        const Vec3d along = (mesh.points[edges.to(boundary[part.i])] - from).unit();
         openvdb::BBoxd box;
-        box.expand(mesh.points[edges.from(e)]);
-        box.expand(mesh.points[edges.to(e)]);
-        box.expand(tolerance);
+        box.expand(from + part.begin * along);
+        box.expand(from + part.end * along);
+        box.expand(2 * tolerance);
         boxes.push_back(box);
     }
     const BoxTree tree(std::move(boxes));
     std::vector<OnEdge> found;
     for (const std::uint32_t p : pointsOf(mesh, boundary)) {
+        progress.throwIfInterrupted();
         const Vec3d& place = mesh.points[p];
         tree.visitAround(place, [&](std::uint32_t i) {
-            const std::uint32_t e = boundary[i];
+            const std::uint32_t e = boundary[parts[i].i];
             if (edges.from(e) == p || edges.to(e) == p) return;
             const Vec3d& from = mesh.points[edges.from(e)];
             const Vec3d edge = mesh.points[edges.to(e)] - from;
             const double length = edge.length();
             const double along = (place - from).dot(edge) / length;
-            // What is nearer to an end has been joined with it, or is its own neighbour.
+            // One of its parts is enough, and what is nearer to an end has been joined with it, or
+            // is its own neighbour.
+            if (!(along >= parts[i].begin && along < parts[i].end)) return;
             if (!(along > tolerance && along < length - tolerance)) return;
             if ((place - from - along / length * edge).length() > tolerance) return;
             found.push_back({e, along / length, p});
@@ -146,14 +178,15 @@ std::size_t splitEdges(Mesh& mesh, const std::vector<OnEdge>& onEdges) {
 
 }  // namespace
 
-StitchedCracks stitchCracks(Mesh& mesh, double tolerance) {
+StitchedCracks stitchCracks(Mesh& mesh, double tolerance, Progress& progress) {
     StitchedCracks stitched;
     for (int round = 0; round < kMostRounds; ++round) {
         std::vector<std::uint32_t> boundary = boundaryEdges(mesh);
         if (boundary.empty()) break;
         const std::size_t joined = joinPoints(mesh, pointsOf(mesh, boundary), tolerance);
         if (joined > 0) boundary = boundaryEdges(mesh);
-        const std::size_t split = splitEdges(mesh, findOnEdges(mesh, boundary, tolerance));
+        const std::size_t split =
+            splitEdges(mesh, findOnEdges(mesh, boundary, tolerance, progress));
         stitched.pointsJoined += joined;
         stitched.edgesSplit += split;
         if (split == 0) break;

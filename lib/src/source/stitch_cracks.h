@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bandvox/core/progress.h>
 #include <bandvox/source/mesh.h>
 
 #include <cstddef>
@@ -15,7 +16,7 @@ struct StitchedCracks {
 /// Closes cracks between triangles, as far as they are no wider than `tolerance` (world units):
 /// points on the mesh's boundary that are near each other become one, and boundary edges are split
 /// where other boundary points lie on them. Points move by no more than the tolerance; edges
-/// shorter than it may collapse, and triangles with them.
-StitchedCracks stitchCracks(Mesh& mesh, double tolerance);
+/// shorter than it may collapse, and triangles with them. Throws Error(ErrorKind::Interrupted).
+StitchedCracks stitchCracks(Mesh& mesh, double tolerance, Progress& progress = silentProgress());
 
 }  // namespace bandvox

@@ -1,5 +1,6 @@
 #include "source/triangle_meetings.h"
 
+#include <bandvox/core/memory.h>
 #include <bandvox/core/parallel.h>
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
@@ -187,8 +188,9 @@ class MeetingTest {
     std::vector<char> mNoArea;
 };
 
-/// Pairs of triangles whose boxes meet.
-std::vector<Pair> findCandidates(const Mesh& mesh) {
+/// Calls visit(pair) for each pair of triangles whose boxes meet.
+template <typename Visit>
+void forEachCandidate(const Mesh& mesh, const Visit& visit) {
     using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::uint32_t,
                                                           CGAL::Box_intersection_d::ID_EXPLICIT>;
     std::vector<Box> boxes;
@@ -200,11 +202,26 @@ std::vector<Pair> findCandidates(const Mesh& mesh) {
                                         box.max().y(), box.max().z()),
                            i);
     }
-    std::vector<Pair> pairs;
     CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
-        pairs.push_back(std::minmax(a.info(), b.info()));
+        visit(Pair(std::minmax(a.info(), b.info())));
     });
-    return pairs;
+}
+
+/// Collects the meetings among pairs, in parallel; there may be more of them than the memory holds.
+void appendMeetings(const MeetingTest& test, const std::vector<Pair>& pairs, Progress& progress,
+                    std::vector<TriangleMeeting>& meetings) {
+    const std::int64_t blocks = MeetingTest::blocks(pairs.size());
+    std::vector<std::vector<TriangleMeeting>> found(static_cast<std::size_t>(blocks));
+    parallelFor(blocks, [&](std::int64_t block) {
+        progress.throwIfInterrupted();
+        MeetingTest::forBlock(block, pairs.size(), [&](std::size_t i) {
+            if (const auto meeting = test(pairs[i])) found[block].push_back(*meeting);
+        });
+    });
+    for (const auto& part : found) meetings.insert(meetings.end(), part.begin(), part.end());
+    // Each takes about a thousand bytes while it is cut.
+    requireMemory(1000.0 * static_cast<double>(meetings.size()),
+                  "the union of so many triangles that cut each other");
 }
 
 }  // namespace
@@ -216,19 +233,19 @@ bool hasNoArea(const Mesh& mesh, std::uint32_t triangle) {
 }
 
 std::vector<TriangleMeeting> findMeetings(const Mesh& mesh, Progress& progress) {
-    const std::vector<Pair> candidates = findCandidates(mesh);
-    progress.throwIfInterrupted();
+    // Of large triangles upon each other all boxes may meet: take the pairs as they come.
+    constexpr std::size_t kBatch = std::size_t(1) << 22;
     const MeetingTest test(mesh);
-    const std::int64_t blocks = MeetingTest::blocks(candidates.size());
-    std::vector<std::vector<TriangleMeeting>> found(static_cast<std::size_t>(blocks));
-    parallelFor(blocks, [&](std::int64_t block) {
-        progress.throwIfInterrupted();
-        MeetingTest::forBlock(block, candidates.size(), [&](std::size_t i) {
-            if (const auto meeting = test(candidates[i])) found[block].push_back(*meeting);
-        });
-    });
     std::vector<TriangleMeeting> meetings;
-    for (const auto& part : found) meetings.insert(meetings.end(), part.begin(), part.end());
+    std::vector<Pair> pairs;
+    forEachCandidate(mesh, [&](const Pair& pair) {
+        pairs.push_back(pair);
+        if (pairs.size() < kBatch) return;
+        appendMeetings(test, pairs, progress, meetings);
+        pairs.clear();
+    });
+    progress.throwIfInterrupted();
+    appendMeetings(test, pairs, progress, meetings);
     std::sort(meetings.begin(), meetings.end(),
               [](const TriangleMeeting& a, const TriangleMeeting& b) {
                   return std::pair(a.first, a.second) < std::pair(b.first, b.second);

@@ -16,7 +16,7 @@ struct TriangleMeeting {
 
 /// Finds the triangles of a mesh that cut, touch or cover each other, in rising order. Exact: the
 /// answers do not depend on rounding. Triangles without area meet all that they touch, even at a
-/// corner. Throws Error(ErrorKind::Interrupted).
+/// corner. Throws Error(ErrorKind::Memory) if they are too many, Error(ErrorKind::Interrupted).
 std::vector<TriangleMeeting> findMeetings(const Mesh& mesh, Progress& progress);
 
 /// True if the corners lie on a line, exactly.
