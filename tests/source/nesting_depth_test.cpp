@@ -150,6 +150,31 @@ TEST(NestingDepth, FilesThatAreDeepEnoughAreRead) {
               std::string::npos);
 }
 
+// Nodes of a library that refer to each other: `last` is what the last one holds.
+std::string colladaOfReferences(int count, const std::string& last, bool twice = true) {
+    std::string nodes;
+    for (int i = 0; i < count; ++i) {
+        const std::string next = "<instance_node url=\"#n" + std::to_string(i + 1) + "\"/>";
+        nodes +=
+            "<node id=\"n" + std::to_string(i) + "\">" + next + (twice ? next : "") + "</node>";
+    }
+    nodes += "<node id=\"n" + std::to_string(count) + "\">" + last + "</node>";
+    return collada(nodes);
+}
+
+TEST(NestingDepth, ReferencesWithoutEndAreRefused) {
+    const TemporaryFolder folder;
+    const std::string itself = messageOf(
+        folder.write("a.dae", colladaOfReferences(3, "<node><instance_node url=\"#n1\"/></node>")));
+    EXPECT_NE(itself.find("an instance of itself"), std::string::npos) << itself;
+    const std::string many = messageOf(folder.write("b.dae", colladaOfReferences(60, "")));
+    EXPECT_NE(many.find("more than a million nodes"), std::string::npos) << many;
+    const std::string deep = messageOf(folder.write("d.dae", colladaOfReferences(1000, "", false)));
+    EXPECT_NE(deep.find("is nested 501"), std::string::npos) << deep;
+    const std::string few = messageOf(folder.write("c.dae", colladaOfReferences(5, "")));
+    EXPECT_EQ(few.find("node"), std::string::npos) << few;
+}
+
 // Each node holds the next one twice: 2^n ways lead to the last.
 TEST(NestingDepth, NodesUnderTwoAreRefused) {
     const TemporaryFolder folder;

@@ -61,7 +61,7 @@ MeshFileFacts checkMeshFile(const std::filesystem::path& path, std::string_view 
     if (extension == ".stl") checkStl(file);
     if (extension == ".glb") checkGlb(file);
     if (extension == ".glb" || extension == ".gltf") facts.triangles = checkGltf(file);
-    if (extension == ".dae") requireShallow(file, xmlDepth(file.bytes));
+    if (extension == ".dae") checkCollada(file);
     if (extension == ".fbx") requireShallow(file, fbxDepth(file.bytes));
     return facts;
 }

@@ -38,6 +38,7 @@ void checkOff(const FileContents& file, std::vector<std::string>& warnings);
 void checkPly(const FileContents& file, std::vector<std::string>& warnings);
 void checkStl(const FileContents& file);
 void checkGlb(const FileContents& file);
+void checkCollada(const FileContents& file);
 
 /// Checks the JSON of a glTF file, text or binary. Returns how many triangles it says that it has,
 /// in all its meshes; 0 if it is not of version 2.
