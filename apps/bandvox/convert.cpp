@@ -254,8 +254,7 @@ const CommandTable& convertTable() {
                  filter},
                 {"overlap", 0, "KIND", "union",
                  "Where shells of a mesh overlap. union: inside is inside. sum: densities add up, "
-                 "so "
-                 "that near parts blend into each other.",
+                 "so that near parts blend into each other.",
                  filter},
                 {"clamp", 0, "", "", "Limit the density to 0 .. 1, which cuts off ringing.",
                  filter},

@@ -22,8 +22,7 @@ const CommandTable& infoTable() {
         "Tells of each grid in a .vdb file, of any type: its size in the world and in memory, and "
         "its metadata. For a density made by bandvox that includes how it was filtered and the "
         "error that was measured. Of a mesh it tells its holes and whatever else keeps it from "
-        "being "
-        "the boundary of a solid, and the volume of the solid that is made of it.",
+        "being the boundary of a solid, and the volume of the solid that is made of it.",
         {{"INPUT", "A .vdb file, or a mesh; stdin.vdb is the standard input."}},
         {{"json", 0, "", "", "Print JSON instead of words.", "Output"}},
         {

@@ -68,7 +68,7 @@ void addSolid(CommandRun& run, Mesh mesh, Json& report) {
     const MeshSource source("", std::move(united.mesh));
     report["area"] = source.area();
     report["volume"] = source.volume();
-    report["closed"] = report["warnings"].empty();
+    report["closed"] = closed.report.warnings.empty() && united.report.warnings.empty();
 }
 
 std::string holesInWords(const Json& holes) {
@@ -96,6 +96,8 @@ Json meshReport(CommandRun& run, const std::string& input) {
     report["objects"] = file.objects;
     report["bounds"] = boundsOf(file.mesh);
     report["warnings"] = file.warnings;
+    report["triangle_meetings"] = nullptr;
+    report["triangles_inside"] = nullptr;
     report["area"] = nullptr;
     report["volume"] = nullptr;
     report["closed"] = false;

@@ -15,9 +15,9 @@ namespace bandvox::app {
 /// triangles_flipped, pieces_turned, one_sided_pieces, non_manifold_edges, holes ([{edges,
 /// perimeter, center}], largest first), triangle_meetings (pairs that cut, touch or cover each
 /// other), triangles_inside (dropped for the union), area and volume (world, of the solid that
-/// comes of it; null if none does), closed (true if nothing had to be closed, turned or united),
-/// warnings, and problem (why no solid comes of it, else null). Throws Error(ErrorKind::Input) if
-/// the file cannot be read.
+/// comes of it), these four null if none does, closed (true if nothing had to be closed, turned or
+/// united), warnings, and problem (why no solid comes of it, else null). Throws
+/// Error(ErrorKind::Input) if the file cannot be read.
 nlohmann::ordered_json meshReport(CommandRun& run, const std::string& input);
 
 /// The same for people.

@@ -1,3 +1,4 @@
+#include "core/words.h"
 #include "source/cap_holes.h"
 #include "source/compensated_sum.h"
 #include "source/orient_components.h"
@@ -30,11 +31,6 @@ constexpr double kMostOneSided = 0.5;
 /// Height of a triangle, relative to its longest edge, below which it has no area.
 constexpr double kNoHeight = 1e-12;
 
-/// "1 hole", "2 holes".
-std::string counted(std::size_t count, const std::string& one, const std::string& many) {
-    return std::to_string(count) + " " + (count == 1 ? one : many);
-}
-
 /// Checks what later steps rely on.
 void checkMesh(const Mesh& mesh) {
     constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() / 3;
@@ -66,13 +62,6 @@ double largestCoordinate(const Mesh& mesh) {
         for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(p[axis]));
     }
     return largest;
-}
-
-/// Removes triangles with two equal corners; returns how many there were.
-std::size_t dropCollapsed(Mesh& mesh) {
-    return std::erase_if(mesh.triangles, [](const Vec3I& t) {
-        return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-    });
 }
 
 std::size_t countWithoutArea(const Mesh& mesh) {

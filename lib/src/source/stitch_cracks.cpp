@@ -62,9 +62,7 @@ std::size_t joinPoints(Mesh& mesh, const std::vector<std::uint32_t>& points, dou
             if (newIndex[t[k]] != kNoIndex) t[k] = newIndex[t[k]];
         }
     }
-    std::erase_if(mesh.triangles, [](const openvdb::Vec3I& t) {
-        return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-    });
+    dropCollapsed(mesh);
     return fewer;
 }
 

@@ -1,3 +1,4 @@
+#include "core/words.h"
 #include "source/box_tree.h"
 #include "source/directed_edges.h"
 #include "source/mesh_arrangement.h"
@@ -179,10 +180,6 @@ bool isClosed(const Mesh& mesh) {
     return closed;
 }
 
-std::string counted(std::size_t count, const char* one, const char* many) {
-    return std::to_string(count) + " " + (count == 1 ? one : many);
-}
-
 }  // namespace
 
 UnitedMesh uniteShells(Mesh mesh, Progress& progress) {
@@ -194,7 +191,8 @@ UnitedMesh uniteShells(Mesh mesh, Progress& progress) {
         meetings = findMeetings(mesh, progress);
     }
     report.meetings = meetings.size();
-    const Mesh original = meetings.empty() ? Mesh() : mesh;
+    Mesh original;
+    if (!meetings.empty()) original = mesh;
     MeshArrangement arrangement = arrangeMesh(std::move(mesh), meetings, progress);
     report.trianglesCut = arrangement.trianglesCut;
 
@@ -205,6 +203,7 @@ UnitedMesh uniteShells(Mesh mesh, Progress& progress) {
         return united;
     }
     const std::vector<Fate> fates = decide(arrangement, patches, progress);
+    if (meetings.empty()) original = arrangement.mesh;
     report.trianglesDropped = keepPatches(arrangement.mesh, patches, fates);
     united.mesh = std::move(arrangement.mesh);
     if (united.mesh.triangles.empty()) {
@@ -214,7 +213,7 @@ UnitedMesh uniteShells(Mesh mesh, Progress& progress) {
     // A wrong winding number, of a sliver that rounding has turned over, shows in what it leaves
     // open.
     if (!isClosed(united.mesh)) {
-        united.mesh = original;
+        united.mesh = std::move(original);
         report.trianglesDropped = 0;
         report.warnings.push_back("shells overlap in a way that could not be cut; they add up");
         return united;

@@ -178,6 +178,12 @@ std::size_t weldPoints(Mesh& mesh, double tolerance) {
     return before - mesh.points.size();
 }
 
+std::size_t dropCollapsed(Mesh& mesh) {
+    return std::erase_if(mesh.triangles, [](const openvdb::Vec3I& t) {
+        return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+    });
+}
+
 std::vector<std::uint32_t> weld(std::vector<Vec3d>& points, double tolerance) {
     std::vector<std::uint32_t> newIndex = weldEqual(points);
 

@@ -16,7 +16,11 @@ void removeUnusedPoints(Mesh& mesh);
 /// Returns how many points fell together with another.
 std::size_t weldPoints(Mesh& mesh, double tolerance);
 
-/// The same for points alone. Returns the number that each of them has among those that are left.
+/// Removes triangles with two equal corners. Returns how many there were.
+std::size_t dropCollapsed(Mesh& mesh);
+
+/// What weldPoints does, for points alone. Returns the number that each of them has among those
+/// that are left.
 std::vector<std::uint32_t> weld(std::vector<openvdb::Vec3d>& points, double tolerance);
 
 }  // namespace bandvox

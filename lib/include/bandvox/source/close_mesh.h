@@ -64,8 +64,8 @@ struct ClosedMesh {
 /// cavities stay cavities in a mesh that is inside out as a whole.
 /// Throws Error(ErrorKind::Input) if nothing is left, an index is out of range or a coordinate is
 /// not finite; Error(ErrorKind::Result) if what is left encloses no volume (a flat mesh, or one
-/// with a single side);
-/// Error(ErrorKind::Usage) for a tolerance outside [0, 1).
+/// with a single side) and a solid is required; Error(ErrorKind::Usage) for a tolerance outside [0,
+/// 1).
 ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options = {},
                      Progress& progress = silentProgress());
 

@@ -11,10 +11,9 @@ namespace bandvox {
 
 /// What was found where shells meet, and what was done about it.
 struct UnionReport {
-    std::size_t meetings = 0;      ///< pairs of triangles that cut, touch or cover each other
-    std::size_t trianglesCut = 0;  ///< of the mesh, along the lines where they meet
-    std::size_t trianglesDropped =
-        0;  ///< whole or in pieces: inside the solid, or bounding nothing
+    std::size_t meetings = 0;           ///< pairs of triangles that cut, touch or cover each other
+    std::size_t trianglesCut = 0;       ///< of the mesh, along the lines where they meet
+    std::size_t trianglesDropped = 0;   ///< or pieces of them: inside, or bounding nothing
     std::vector<std::string> warnings;  ///< in words, for the user
 };
 
@@ -34,7 +33,7 @@ struct UnitedMesh {
 /// was, without shells that lie within others. Cost is that of finding what meets, about that of
 /// sorting the triangles, and of what does. A. Zhou, E. Grinspun, D. Zorin, A. Jacobson: "Mesh
 /// Arrangements for Solid Geometry" (2016). Throws Error(ErrorKind::Result) if nothing is left,
-/// Error(ErrorKind::Interrupted).
+/// Error(ErrorKind::Memory) if too many triangles meet, Error(ErrorKind::Interrupted).
 UnitedMesh uniteShells(Mesh mesh, Progress& progress = silentProgress());
 
 }  // namespace bandvox
