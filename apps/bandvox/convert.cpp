@@ -8,6 +8,7 @@
 #include "words.h"
 
 #include <bandvox/bandlimit/field_to_density.h>
+#include <bandvox/bandlimit/soup_to_density.h>
 #include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/source/mesh_source.h>
@@ -18,7 +19,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 
 namespace bandvox::app {
@@ -31,46 +33,50 @@ constexpr int kMostOversample = 64;
 // word. Samples on faces, which count as inside, come to that at a few tens of voxels.
 constexpr double kSampledVolumeError = 0.02;
 
+/// By which a solid becomes a density, in the order in which --route names them.
+enum class Route { Auto, Exact, Sampled, Winding };
+
 struct ConvertRequest {
     std::string input;
     std::filesystem::path output;
-    bool isSampled = false;  ///< by the sampled route
-    bool isToleranceAsked = false;
+    Route route = Route::Auto;
     Overlap overlap = Overlap::Union;
-    FieldDensityOptions field;  ///< `density` of it holds for the exact route, too
+    DensityOptions density;
+    std::optional<int> oversample;
+    std::optional<double> samplingTolerance;  ///< if it was asked for
     VdbWriteOptions write;
 };
 
-/// A solid, and what was done to make it one.
-struct Solid {
-    std::unique_ptr<BoundarySource> source;
-    int holesCapped = 0;
-};
-
 void readRoute(const CommandLine& line, ConvertRequest& request) {
-    request.isSampled = line.choice("route", {"auto", "exact", "sampled"}, 0) == 2;
-    if (line.has("oversample") && !request.isSampled) {
+    request.route =
+        static_cast<Route>(line.choice("route", {"auto", "exact", "sampled", "winding"}, 0));
+    if (request.route == Route::Sampled && !isShape(request.input)) {
         throw Error(ErrorKind::Usage,
-                    "--oversample is for the sampled route; expected --route sampled with it");
-    }
-    if (request.isSampled && !isShape(request.input)) {
-        throw Error(ErrorKind::Usage,
-                    "--route sampled takes a built-in shape, by its formula, and "
-                    "'" +
+                    "--route sampled takes a built-in shape, by its formula, and '" +
                         request.input +
-                        "' is none; a mesh takes the exact "
-                        "route");
+                        "' is none; a mesh takes the exact route, or that of its winding number");
     }
-    request.field.oversample =
-        line.wholeNumber("oversample", 1, kMostOversample, request.field.oversample);
+    if (request.route == Route::Winding && isShape(request.input)) {
+        throw Error(ErrorKind::Usage, "--route winding takes a mesh, and '" + request.input +
+                                          "' is a built-in shape; expected --route exact or "
+                                          "sampled with it");
+    }
+    const bool isSampling = request.route == Route::Sampled || request.route == Route::Winding;
+    if (line.has("oversample")) {
+        if (!isSampling) {
+            throw Error(ErrorKind::Usage,
+                        "--oversample is for the sampled route and that of the winding number; "
+                        "expected --route sampled or --route winding with it");
+        }
+        request.oversample = line.wholeNumber("oversample", 1, kMostOversample, 1);
+    }
     // Sampling is by far the largest error, so what is allowed is allowed to it.
-    DensityOptions& density = request.field.density;
+    DensityOptions& density = request.density;
+    if (!line.has("tolerance")) return;
     const double tolerance =
-        line.number("tolerance", {.low = 1e-6, .high = 0.05},
-                    request.isSampled ? request.field.samplingTolerance : density.tolerance);
-    if (request.isSampled) request.field.samplingTolerance = tolerance;
-    request.isToleranceAsked = line.has("tolerance");
-    density.tolerance = request.isSampled ? std::min(density.tolerance, tolerance) : tolerance;
+        line.number("tolerance", {.low = 1e-6, .high = 0.05}, density.tolerance);
+    request.samplingTolerance = tolerance;
+    density.tolerance = isSampling ? std::min(density.tolerance, tolerance) : tolerance;
 }
 
 ConvertRequest parseConvert(const CommandLine& line) {
@@ -81,7 +87,7 @@ ConvertRequest parseConvert(const CommandLine& line) {
     request.output = outputPath(output);
 
     readRoute(line, request);
-    DensityOptions& density = request.field.density;
+    DensityOptions& density = request.density;
     readSize(line, density.resolution, density.voxelSize);
     density.filter.cutoff =
         line.number("cutoff", {.low = 0.01, .high = 0.5}, density.filter.cutoff);
@@ -102,19 +108,21 @@ ConvertRequest parseConvert(const CommandLine& line) {
     return request;
 }
 
-Solid loadSolid(CommandRun& run, const std::string& input, Overlap overlap) {
-    if (!isShape(input)) {
-        SolidMesh mesh = loadSolidMesh(run, input, overlap);
-        return {std::move(mesh.source), mesh.holesCapped};
-    }
-    Solid solid{makeShapeBoundary(input), 0};
-    run.say("read     " + input);
-    return solid;
+bool isExact(const DensityResult& result) {
+    return result.metadata.route == "exact";
 }
 
-std::string errorInWords(const ConvertRequest& request, const DensityMetadata& metadata) {
+// The sampling error that goes without a warning.
+double samplingTolerance(const ConvertRequest& request, const DensityResult& result) {
+    const bool isSampled = result.metadata.route == "sampled";
+    return request.samplingTolerance.value_or(isSampled ? FieldDensityOptions().samplingTolerance
+                                                        : SoupDensityOptions().samplingTolerance);
+}
+
+std::string errorInWords(const ConvertRequest& request, const DensityResult& result) {
+    const DensityMetadata& metadata = result.metadata;
     std::string words;
-    if (!request.isSampled) {
+    if (isExact(result)) {
         words = formatNumber(metadata.closureError, 2) + " measured by closure, tolerance " +
                 formatNumber(metadata.tolerance, 2);
     } else if (std::isnan(metadata.samplingError)) {
@@ -122,7 +130,7 @@ std::string errorInWords(const ConvertRequest& request, const DensityMetadata& m
     } else {
         words = formatNumber(metadata.samplingError, 2) +
                 " measured by halving the samples, tolerance " +
-                formatNumber(request.field.samplingTolerance, 2);
+                formatNumber(samplingTolerance(request, result), 2);
     }
     if (request.write.half) {
         words += "; 16 bits change it by up to " + formatNumber(metadata.storageError, 2);
@@ -142,11 +150,11 @@ void sayResult(CommandRun& run, const ConvertRequest& request, const DensityResu
     run.sayMore(
         "tiles    " + std::to_string(result.tiles) + " of side " + std::to_string(result.tileSide) +
         " with a halo of " + std::to_string(result.halo) +
-        (request.isSampled
+        (result.fieldSamples > 0
              ? ", from " + formatCount(result.fieldSamples, "sample", "samples")
              : ", spread over " + std::to_string(result.kernelWidth) + " voxels from " +
                    formatCount(result.surfaceSamples, "surface sample", "surface samples")));
-    run.say("error    " + errorInWords(request, metadata));
+    run.say("error    " + errorInWords(request, result));
     const double difference =
         metadata.sourceVolume != 0
             ? std::abs(metadata.gridVolume - metadata.sourceVolume) / metadata.sourceVolume
@@ -171,20 +179,41 @@ void sayResult(CommandRun& run, const ConvertRequest& request, const DensityResu
     run.count("grid_volume", metadata.gridVolume);
 }
 
-DensityResult toDensity(CommandRun& run, const ConvertRequest& request) {
-    if (!request.isSampled) {
-        const Solid solid = loadSolid(run, request.input, request.overlap);
-        DensityResult result =
-            surfaceToDensity(*solid.source, request.field.density, run.progress());
-        result.metadata.holesCapped = solid.holesCapped;
-        return result;
+DensityResult meshToDensity(CommandRun& run, const ConvertRequest& request) {
+    const Capping capping = request.route == Route::Exact     ? Capping::All
+                            : request.route == Route::Winding ? Capping::None
+                                                              : Capping::Sensible;
+    SolidMesh mesh = loadSolidMesh(run, request.input, {capping, request.overlap});
+    DensityResult result;
+    if (mesh.soup.triangles.empty()) {
+        const MeshSource source(mesh.name, std::move(mesh.solid));
+        result = surfaceToDensity(source, request.density, run.progress());
+    } else {
+        SoupDensityOptions options;
+        options.density = request.density;
+        options.rowsPerVoxel = request.oversample.value_or(options.rowsPerVoxel);
+        options.samplingTolerance = request.samplingTolerance.value_or(options.samplingTolerance);
+        result = soupToDensity({mesh.name, std::move(mesh.soup), std::move(mesh.solid)}, options,
+                               run.progress());
     }
-    const auto field = makeShapeField(request.input);
+    result.metadata.holesCapped = mesh.holesCapped;
+    return result;
+}
+
+DensityResult shapeToDensity(CommandRun& run, const ConvertRequest& request) {
     run.say("read     " + request.input);
-    DensityResult result = fieldToDensity(*field, request.field, run.progress());
+    const auto boundary = makeShapeBoundary(request.input);
+    if (request.route != Route::Sampled) {
+        return surfaceToDensity(*boundary, request.density, run.progress());
+    }
+    FieldDensityOptions options;
+    options.density = request.density;
+    options.oversample = request.oversample.value_or(options.oversample);
+    options.samplingTolerance = request.samplingTolerance.value_or(options.samplingTolerance);
+    DensityResult result = fieldToDensity(*makeShapeField(request.input), options, run.progress());
     // Of a shape, unlike other fields, the volume is known.
     DensityMetadata& metadata = result.metadata;
-    metadata.sourceVolume = makeShapeBoundary(request.input)->volume();
+    metadata.sourceVolume = boundary->volume();
     const double difference = std::abs(metadata.gridVolume / metadata.sourceVolume - 1);
     // Where the sampling error is too large, that has been said.
     if (difference > kSampledVolumeError && !metadata.clamped && result.warnings.empty()) {
@@ -195,21 +224,25 @@ DensityResult toDensity(CommandRun& run, const ConvertRequest& request) {
     return result;
 }
 
-// The default tolerance of the sampled route warns; one that was asked for has to be kept.
-void requireTolerance(const ConvertRequest& request, const DensityMetadata& metadata) {
-    const double asked = request.field.samplingTolerance;
-    if (!request.isSampled || !request.isToleranceAsked) return;
-    if (std::isnan(metadata.samplingError)) {
+// The default tolerance of sampling warns; one that was asked for has to be kept.
+void requireTolerance(const ConvertRequest& request, const DensityResult& result) {
+    if (isExact(result) || !request.samplingTolerance) return;
+    const double asked = *request.samplingTolerance;
+    const double error = result.metadata.samplingError;
+    if (std::isnan(error)) {
         throw Error(ErrorKind::Result,
                     "the sampling error is not known for an odd --oversample, so it cannot be told "
                     "to keep to the tolerance asked for, " +
                         formatNumber(asked, 2) + "; expected an even one");
     }
-    if (metadata.samplingError <= asked) return;
+    if (error <= asked) return;
+    const bool isSampled = request.route == Route::Sampled;
     throw Error(ErrorKind::Result,
-                "the sampling error of " + formatNumber(metadata.samplingError, 2) +
+                "the sampling error of " + formatNumber(error, 2) +
                     " is above the tolerance asked for, " + formatNumber(asked, 2) +
-                    "; take more samples (--oversample), or the exact route");
+                    "; take more samples (" +
+                    (isSampled ? "--oversample), or the exact route"
+                               : "--route winding --oversample), or a mesh that is closed"));
 }
 
 }  // namespace
@@ -245,12 +278,16 @@ const CommandTable& convertTable() {
                  "Side of the cube that is filtered at a time, in voxels, even, at most 512.",
                  filter},
                 {"route", 0, "KIND", "auto",
-                 "exact: from the surface itself. sampled: from samples of a shape's formula, "
-                 "which alias a little. auto: exact, where there is a surface.",
+                 "exact: from the surface itself, holes capped. sampled: from samples of a shape's "
+                 "formula, which alias a little. winding: the places that a mesh's triangles wind "
+                 "around by more than half, followed along rows. auto: exact, but winding for what "
+                 "of a mesh caps cannot close.",
                  filter},
-                {"oversample", 0, "P", std::to_string(FieldDensityOptions().oversample),
-                 "Samples along a voxel's side on the sampled route, 1 to 64; an even number has "
-                 "its error measured.",
+                {"oversample", 0, "P",
+                 std::to_string(FieldDensityOptions().oversample) + ", winding " +
+                     std::to_string(SoupDensityOptions().rowsPerVoxel),
+                 "Samples along a voxel's side on the sampled route, or rows on that of the "
+                 "winding number, 1 to 64; an even number has its error measured.",
                  filter},
                 {"overlap", 0, "KIND", "union",
                  "Where shells of a mesh overlap. union: inside is inside. sum: densities add up, "
@@ -284,8 +321,9 @@ void runConvert(const CommandLine& line) {
     CommandRun run(line);
     AtomicFile output(request.output);
 
-    DensityResult result = toDensity(run, request);
-    requireTolerance(request, result.metadata);
+    DensityResult result =
+        isShape(request.input) ? shapeToDensity(run, request) : meshToDensity(run, request);
+    requireTolerance(request, result);
     if (request.write.half) {
         // What is stated has to hold for what is in the file.
         result.metadata.storageError = roundToHalf(*result.grid);

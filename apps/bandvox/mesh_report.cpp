@@ -47,18 +47,23 @@ void addClosing(const CloseMeshReport& closing, Json& report) {
     report["pieces_turned"] = closing.componentsTurned;
     report["one_sided_pieces"] = closing.oneSided;
     report["non_manifold_edges"] = closing.nonManifoldEdges;
+    report["soup_pieces"] = closing.soupPieces;
+    report["soup_triangles"] = closing.soupTriangles;
     report["holes"] = toJson(closing.holes);
     for (const std::string& warning : closing.warnings) report["warnings"].push_back(warning);
 }
 
 // Makes a solid of it, as far as that goes.
 void addSolid(CommandRun& run, Mesh mesh, Json& report) {
-    ClosedMesh closed = closeMesh(std::move(mesh), {.requireSolid = false}, run.progress());
+    ClosedMesh closed = closeMesh(
+        std::move(mesh), {.requireSolid = false, .capping = Capping::Sensible}, run.progress());
     addClosing(closed.report, report);
     if (!closed.report.problem.empty()) {
         report["problem"] = closed.report.problem;
         return;
     }
+    // What a soup encloses only its winding numbers tell.
+    if (!closed.soup.triangles.empty()) return;
     UnitedMesh united = uniteShells(std::move(closed.mesh), run.progress());
     report["triangle_meetings"] = united.report.meetings;
     report["triangles_inside"] = united.report.trianglesDropped;
@@ -112,7 +117,6 @@ Json meshReport(CommandRun& run, const std::string& input) {
 }
 
 std::string meshReportInWords(const Json& report) {
-    const auto count = [&](const char* key) { return report.value(key, std::size_t(0)); };
     std::string out = inWords(report["file"]) + ": " +
                       formatBytes(report["file_bytes"].get<std::int64_t>()) + ", mesh\n";
     for (const char* key : {"points", "triangles", "objects"}) {
@@ -134,7 +138,7 @@ std::string meshReportInWords(const Json& report) {
         appendLine(out, "holes", std::to_string(report["holes"].size()));
         out += holesInWords(report["holes"]);
     }
-    if (count("pieces") > 0 && report["problem"].is_null()) {
+    if (!report["volume"].is_null()) {
         appendLine(out, "area", inWords(report["area"]));
         appendLine(out, "volume", inWords(report["volume"]));
     }

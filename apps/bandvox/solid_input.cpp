@@ -2,7 +2,6 @@
 
 #include "words.h"
 
-#include <bandvox/source/close_mesh.h>
 #include <bandvox/source/read_mesh.h>
 #include <bandvox/source/shapes.h>
 #include <bandvox/source/unite_shells.h>
@@ -45,6 +44,7 @@ void sayRepairs(CommandRun& run, const CloseMeshReport& report) {
     add(report.degenerateTriangles, "triangle without area", "triangles without area");
     add(report.trianglesFlipped, "triangle flipped", "triangles flipped");
     add(report.componentsTurned, "piece turned outward", "pieces turned outward");
+    add(report.soupTriangles, "triangle set aside", "triangles set aside");
     add(report.nonManifoldEdges, "edge of more than two triangles",
         "edges of more than two triangles");
     run.say("solid    " + joined(parts, ", "));
@@ -85,7 +85,8 @@ void requireMeshOrShape(const std::string& verb, const std::string& input) {
                 "cannot " + verb + " '" + input + "': " + found + "; expected a " + meshOrShape());
 }
 
-SolidMesh loadSolidMesh(CommandRun& run, const std::string& input, Overlap overlap) {
+SolidMesh loadSolidMesh(CommandRun& run, const std::string& input,
+                        const SolidMeshOptions& options) {
     const std::filesystem::path path = input;
     MeshFile file = readMesh(path, run.progress());
     run.say("read     " + path.string() + ": " +
@@ -99,18 +100,20 @@ SolidMesh loadSolidMesh(CommandRun& run, const std::string& input, Overlap overl
     run.count("objects", file.objects);
     run.warn(file.warnings, ErrorKind::Input);
 
-    ClosedMesh closed = closeMesh(std::move(file.mesh), {}, run.progress());
+    ClosedMesh closed =
+        closeMesh(std::move(file.mesh), {.capping = options.capping}, run.progress());
     sayRepairs(run, closed.report);
     run.count("holes_capped", closed.report.holes.size());
+    run.count("soup_triangles", closed.report.soupTriangles);
     run.warn(closed.report.warnings, ErrorKind::Input);
-    const auto holes = static_cast<int>(closed.report.holes.size());
-    if (overlap == Overlap::Union) {
+    if (options.overlap == Overlap::Union && !closed.mesh.triangles.empty()) {
         UnitedMesh united = uniteShells(std::move(closed.mesh), run.progress());
         sayUnion(run, united.report);
         run.warn(united.report.warnings, ErrorKind::Input);
         closed.mesh = std::move(united.mesh);
     }
-    return {std::make_unique<MeshSource>(path.filename().string(), std::move(closed.mesh)), holes};
+    return {path.filename().string(), std::move(closed.mesh), std::move(closed.soup),
+            static_cast<int>(closed.report.holes.size())};
 }
 
 }  // namespace bandvox::app

@@ -3,9 +3,9 @@
 #include "command_run.h"
 #include "option_table.h"
 
-#include <bandvox/source/mesh_source.h>
+#include <bandvox/source/close_mesh.h>
+#include <bandvox/source/mesh.h>
 
-#include <memory>
 #include <string>
 
 namespace bandvox::app {
@@ -17,16 +17,24 @@ PositionalEntry solidInputEntry();
 /// like a mesh file or a built-in shape.
 void requireMeshOrShape(const std::string& verb, const std::string& input);
 
-/// A mesh made the boundary of a solid.
+/// A mesh made the boundary of a solid, and what of it could not be.
 struct SolidMesh {
-    std::unique_ptr<MeshSource> source;
+    std::string name;
+    Mesh solid;  ///< closed, and united if asked for; empty if all is soup
+    Mesh soup;   ///< what only a winding number makes a solid of; empty for most
     int holesCapped = 0;
 };
 
 /// What becomes of shells that overlap.
 enum class Overlap { Union, Sum };
 
+/// How a mesh is made a solid.
+struct SolidMeshOptions {
+    Capping capping = Capping::Sensible;
+    Overlap overlap = Overlap::Union;
+};
+
 /// Reads a mesh and makes it the boundary of a solid; says and counts what was found and done.
-SolidMesh loadSolidMesh(CommandRun& run, const std::string& input, Overlap overlap);
+SolidMesh loadSolidMesh(CommandRun& run, const std::string& input, const SolidMeshOptions& options);
 
 }  // namespace bandvox::app

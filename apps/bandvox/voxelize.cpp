@@ -54,8 +54,9 @@ VoxelizedSolid voxelize(CommandRun& run, const VoxelizeRequest& request) {
         return {fieldToVoxels(*field, request.voxels, run.progress()),
                 makeShapeBoundary(request.input)->volume()};
     }
-    const SolidMesh mesh = loadSolidMesh(run, request.input, Overlap::Union);
-    return {meshToVoxels(*mesh.source, request.voxels, run.progress()), mesh.source->volume()};
+    SolidMesh mesh = loadSolidMesh(run, request.input, {});
+    const MeshSource source(mesh.name, std::move(mesh.solid));
+    return {meshToVoxels(source, request.voxels, run.progress()), source.volume()};
 }
 
 /// Says what was made; warns if the voxels are too few to tell the solid's size.

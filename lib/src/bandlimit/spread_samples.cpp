@@ -1,16 +1,8 @@
 #include "bandlimit/spread_samples.h"
 
-#include <cmath>
+#include "core/instruction_sets.h"
 
-// The same loop for several instruction sets, chosen when the program starts. The sanitizers'
-// runtimes are not ready yet at that moment.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
-#define BANDVOX_FOR_EACH_INSTRUCTION_SET \
-    __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
-#else
-#define BANDVOX_FOR_EACH_INSTRUCTION_SET
-#endif
+#include <cmath>
 
 namespace bandvox {
 

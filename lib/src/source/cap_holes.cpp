@@ -104,8 +104,8 @@ CappedHole capLoop(const std::vector<std::uint32_t>& loop, std::uint32_t compone
 
 }  // namespace
 
-std::vector<CappedHole> capHoles(Mesh& mesh, MeshComponents& components) {
-    std::vector<CappedHole> holes;
+std::vector<HoleOfPiece> capHoles(Mesh& mesh, MeshComponents& components) {
+    std::vector<HoleOfPiece> holes;
     const std::vector<BoundaryEdge>& edges = components.boundary;
     LoopFinder finder(edges, mesh.points.size());
     for (std::size_t begin = 0; begin < edges.size();) {
@@ -113,13 +113,10 @@ std::vector<CappedHole> capHoles(Mesh& mesh, MeshComponents& components) {
         std::size_t end = begin;
         while (end < edges.size() && edges[end].component == component) ++end;
         finder.findLoops(begin, end, [&](const std::vector<std::uint32_t>& loop) {
-            holes.push_back(capLoop(loop, component, mesh, components));
+            holes.push_back({component, capLoop(loop, component, mesh, components)});
         });
         begin = end;
     }
-    std::stable_sort(holes.begin(), holes.end(), [](const CappedHole& a, const CappedHole& b) {
-        return a.perimeter > b.perimeter;
-    });
     return holes;
 }
 

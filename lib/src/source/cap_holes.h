@@ -4,13 +4,19 @@
 
 #include <bandvox/source/close_mesh.h>
 
+#include <cstdint>
 #include <vector>
 
 namespace bandvox {
 
-/// Closes each boundary loop of each piece by a fan about the mean of its points (a loop of
-/// three edges by one triangle). The new triangles are added to their pieces.
-/// Returns the loops in order of falling perimeter.
-std::vector<CappedHole> capHoles(Mesh& mesh, MeshComponents& components);
+/// A hole, and the piece that it was one of.
+struct HoleOfPiece {
+    std::uint32_t piece;
+    CappedHole hole;
+};
+
+/// Closes each boundary loop of each piece by a surface of little area (a loop of three edges by
+/// one triangle). The new triangles are added to their pieces, after all others.
+std::vector<HoleOfPiece> capHoles(Mesh& mesh, MeshComponents& components);
 
 }  // namespace bandvox

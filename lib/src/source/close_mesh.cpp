@@ -3,6 +3,7 @@
 #include "source/compensated_sum.h"
 #include "source/orient_components.h"
 #include "source/remove_duplicates.h"
+#include "source/separate_soup.h"
 #include "source/stitch_cracks.h"
 #include "source/turn_outward.h"
 #include "source/weld_points.h"
@@ -128,6 +129,19 @@ std::string problemOfVolume(const Mesh& mesh) {
     return text.str();
 }
 
+// The holes of pieces that are not soup, in order of falling perimeter.
+std::vector<CappedHole> holesOfSolids(const std::vector<HoleOfPiece>& all,
+                                      const std::vector<char>& isSoup) {
+    std::vector<CappedHole> holes;
+    for (const HoleOfPiece& hole : all) {
+        if (isSoup.empty() || isSoup[hole.piece] == 0) holes.push_back(hole.hole);
+    }
+    std::stable_sort(holes.begin(), holes.end(), [](const CappedHole& a, const CappedHole& b) {
+        return a.perimeter > b.perimeter;
+    });
+    return holes;
+}
+
 void requireNoProblem(const CloseMeshOptions& options, const CloseMeshReport& report) {
     if (options.requireSolid && !report.problem.empty()) {
         throw Error(ErrorKind::Result, report.problem);
@@ -159,6 +173,12 @@ void describe(const MeshComponents& components, const TurnedComponents& turned,
         warn(counted(components.trianglesFlipped, "triangle", "triangles") +
              " disagreed with the neighbours about what is outside and " +
              (components.trianglesFlipped == 1 ? "was" : "were") + " flipped");
+    }
+    if (report.soupPieces > 0) {
+        warn(counted(report.soupPieces, "piece", "pieces") + " of " +
+             counted(report.soupTriangles, "triangle", "triangles") + " " +
+             (report.soupPieces == 1 ? "is" : "are") +
+             " not closed; what the triangles enclose together is told by their winding number");
     }
     if (!report.holes.empty()) {
         std::ostringstream text;
@@ -213,7 +233,18 @@ ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progr
     requireNoProblem(options, report);
     report.nonManifoldEdges = components.nonManifoldEdges;
     advance();
-    report.holes = capHoles(mesh, components);
+    const std::size_t firstCap = mesh.triangles.size();
+    const std::vector<HoleOfPiece> holes = capHoles(mesh, components);
+    SeparatedSoup separated;
+    if (options.capping == Capping::Sensible) {
+        separated = separateSoup(mesh, components, firstCap);
+    } else if (options.capping == Capping::None) {
+        separated = separateAll(mesh, components, firstCap);
+    }
+    report.soupPieces = separated.pieces;
+    report.soupTriangles = separated.soup.triangles.size();
+    report.holes = holesOfSolids(holes, separated.isSoup);
+    closed.soup = std::move(separated.soup);
     advance();
 
     // Turn them outward. Triangles without area stay: their neighbours' edges are theirs.
@@ -221,6 +252,11 @@ ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progr
     report.componentsTurned = turned.components;
     report.trianglesFlipped = components.trianglesFlipped + turned.triangles;
     if (report.problem.empty()) report.problem = problemOfVolume(mesh);
+    if (report.soupTriangles > 0 && !report.problem.empty()) {
+        // What encloses nothing adds nothing to the soup.
+        report.problem.clear();
+        mesh = {};
+    }
     requireNoProblem(options, report);
     describe(components, turned, report);
     advance();

@@ -1,23 +1,34 @@
 #include "source/ray_crossing.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace bandvox {
 
 using openvdb::Vec3d;
 
-int rayCrossing(const Vec3d& p, const std::array<Vec3d, 3>& corner) {
+namespace {
+
+// How often the triangle, seen along x, goes around the point.
+int turnsAround(double y, double z, const std::array<Vec3d, 3>& corner) {
     int winding = 0;
     for (int i = 0; i < 3; ++i) {
         const Vec3d* lower = &corner[i];
         const Vec3d* upper = &corner[(i + 1) % 3];
-        if ((lower->y() <= p.y()) == (upper->y() <= p.y())) continue;
-        const bool rises = lower->y() <= p.y();
+        if ((lower->y() <= y) == (upper->y() <= y)) continue;
+        const bool rises = lower->y() <= y;
         if (!rises) std::swap(lower, upper);
-        const double side = (upper->y() - lower->y()) * (p.z() - lower->z()) -
-                            (upper->z() - lower->z()) * (p.y() - lower->y());
+        const double side = (upper->y() - lower->y()) * (z - lower->z()) -
+                            (upper->z() - lower->z()) * (y - lower->y());
         if (side > 0.0) winding += rises ? 1 : -1;
     }
+    return winding;
+}
+
+}  // namespace
+
+int rayCrossing(const Vec3d& p, const std::array<Vec3d, 3>& corner) {
+    const int winding = turnsAround(p.y(), p.z(), corner);
     if (winding == 0) return 0;
 
     // Compare the depth of the triangle's plane with that of the point.
@@ -27,6 +38,17 @@ int rayCrossing(const Vec3d& p, const std::array<Vec3d, 3>& corner) {
                            ? height / normal.x() > 0.0
                            : corner[0].x() + corner[1].x() + corner[2].x() > 3.0 * p.x();
     return ahead ? winding : 0;
+}
+
+std::optional<LineCrossing> lineCrossing(double y, double z, const std::array<Vec3d, 3>& corner) {
+    const int winding = turnsAround(y, z, corner);
+    if (winding == 0) return std::nullopt;
+    const auto [least, most] = std::minmax({corner[0].x(), corner[1].x(), corner[2].x()});
+    const Vec3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    const Vec3d from(0.0, y - corner[0].y(), z - corner[0].z());
+    const double x =
+        normal.x() != 0.0 ? corner[0].x() - normal.dot(from) / normal.x() : 0.5 * (least + most);
+    return LineCrossing{std::clamp(x, least, most), winding};
 }
 
 }  // namespace bandvox

@@ -18,15 +18,16 @@ class AtomicFile;
 struct DensityMetadata {
     std::string version;          ///< of the library that made it
     std::string source;           ///< file or shape it was made from
-    std::string route = "exact";  ///< "exact" or "sampled"
+    std::string route = "exact";  ///< "exact", "sampled" or "winding"
     double order = 0;             ///< of the exponential filter
     double cutoff = 0;            ///< of the exponential filter, cycles per voxel
-    double oversampling = 0;      ///< R/N of the sampled route; 0 for the exact route
+    double oversampling = 0;      ///< R/N of the sampled route, rows to a voxel's side of
+                                  ///< that of the winding number; 0 for the exact route
     double iso = 0.5;             ///< density that is the surface
     double tolerance = 0;         ///< error asked for, that of sampling apart, density
     double closureError = 0;      ///< measured by the exact route while writing, density
-    double samplingError = 0;     ///< measured by the sampled route while writing, density; NaN if
-                                  ///< it is not known, 0 for the exact route
+    double samplingError = 0;     ///< measured by the other two routes while writing, density;
+                                  ///< NaN if it is not known, 0 for the exact route
     double storageError = 0;      ///< largest change by rounding to 16 bits, density; 0 without
     double sourceVolume = 0;      ///< enclosed by the source, world units³; 0 if it is not known,
                                   ///< as it is not for a field

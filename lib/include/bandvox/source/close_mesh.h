@@ -9,6 +9,14 @@
 
 namespace bandvox {
 
+/// Which of a mesh's pieces have their holes capped. The others are soup: triangles of which only
+/// the winding number tells what they enclose.
+enum class Capping {
+    All,       ///< every piece
+    Sensible,  ///< those whose caps do not contradict the winding number of all the triangles
+    None       ///< no piece, not even where nothing has to be capped
+};
+
 /// How a mesh is made the boundary of a solid.
 struct CloseMeshOptions {
     /// Points nearer than this are one, relative to the largest coordinate; 0 welds equal points
@@ -20,6 +28,8 @@ struct CloseMeshOptions {
     double crackTolerance = 1e-4;
 
     bool requireSolid = true;  ///< throw what keeps it from being a solid, besides reporting it
+
+    Capping capping = Capping::All;  ///< other pieces go into ClosedMesh::soup
 };
 
 /// One boundary loop that was capped.
@@ -41,7 +51,9 @@ struct CloseMeshReport {
     std::size_t componentsTurned = 0;     ///< pieces that were inside out
     std::size_t nonManifoldEdges = 0;     ///< edges of more than two triangles
     std::size_t oneSided = 0;             ///< pieces on which inside and outside cannot be told
-    std::vector<CappedHole> holes;        ///< in order of falling perimeter
+    std::size_t soupPieces = 0;           ///< pieces that were set aside as soup
+    std::size_t soupTriangles = 0;        ///< of those
+    std::vector<CappedHole> holes;        ///< in order of falling perimeter; without those of soup
     std::vector<std::string> warnings;    ///< in words, for the user
     std::string problem;                  ///< why it bounds no solid; empty if it does
 };
@@ -49,6 +61,7 @@ struct CloseMeshReport {
 /// A closed mesh, and how it came about.
 struct ClosedMesh {
     Mesh mesh;  ///< every directed edge has its opposite, counted with multiplicity
+    Mesh soup;  ///< what only a winding number makes a solid of (SoupSource), outward; often empty
     CloseMeshReport report;
 };
 
@@ -60,6 +73,10 @@ struct ClosedMesh {
 /// A piece is what is connected across edges of exactly two triangles. Of two triangles that
 /// cover each other from opposite sides both are dropped, unless most of the mesh is like that:
 /// then one of each two.
+/// With Capping::Sensible, pieces are set aside whose caps contradict the winding number of all
+/// that is not capped: panels that do not touch, shells cut up. The mesh may then be empty, but not
+/// both.
+///
 /// A piece inside another keeps its orientation relative to the outermost piece around it, so
 /// cavities stay cavities in a mesh that is inside out as a whole.
 /// Throws Error(ErrorKind::Input) if nothing is left, an index is out of range or a coordinate is

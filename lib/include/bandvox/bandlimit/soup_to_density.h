@@ -1,0 +1,40 @@
+#pragma once
+
+#include <bandvox/bandlimit/density.h>
+#include <bandvox/core/progress.h>
+#include <bandvox/source/mesh.h>
+
+#include <string>
+
+namespace bandvox {
+
+/// Triangles that no repair makes the boundary of a solid, beside those that are one.
+struct SoupOfTriangles {
+    std::string name;  ///< a file's
+    Mesh soup;         ///< with openings; its points that belong together are one
+    Mesh solid;        ///< closed, as uniteShells leaves it; may be empty
+};
+
+/// How a soup is made a solid and band-limited.
+struct SoupDensityOptions {
+    DensityOptions density;  ///< as for the exact route; its tolerance is that of all but sampling
+    int rowsPerVoxel = 4;    ///< P; P² rows through a voxel follow the solid; 1 to 64
+    double samplingTolerance = 0.1;  ///< sampling error allowed without a warning, density; ≥ 0
+};
+
+/// Turns the places that a soup winds around by more than half, and those in the solid beside it,
+/// into a band-limited density grid. The solid goes by the exact route; of the soup the winding
+/// number is followed along rows (SoupSource), and where they enter and leave it is integrated
+/// over as the exact route does with samples of a surface (docs/any-mesh.md).
+///
+/// Lattice and grid are as those of surfaceToDensity. What the rows cannot tell is measured, for an
+/// even number of them, by the difference from half as many along either side; that is stored as
+/// the sampling error, which it exceeds several times on ordinary meshes (docs/any-mesh.md), and is
+/// a warning if above `samplingTolerance`. For an odd number the error is not known, which is a
+/// warning, too. Throws as surfaceToDensity, and Error(ErrorKind::Result)
+/// if the soup encloses nothing.
+DensityResult soupToDensity(const SoupOfTriangles& triangles,
+                            const SoupDensityOptions& options = {},
+                            Progress& progress = silentProgress());
+
+}  // namespace bandvox

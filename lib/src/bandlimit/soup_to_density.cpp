@@ -1,0 +1,86 @@
+#include "bandlimit/density_steps.h"
+#include "bandlimit/grid_difference.h"
+#include "core/words.h"
+
+#include <bandvox/bandlimit/soup_to_density.h>
+#include <bandvox/bandlimit/surface_to_density.h>
+#include <bandvox/core/error.h>
+#include <bandvox/source/joined_source.h>
+#include <bandvox/source/mesh_source.h>
+#include <bandvox/source/soup_source.h>
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace bandvox {
+
+namespace {
+
+openvdb::BBoxd boundsOf(const Mesh& mesh) {
+    openvdb::BBoxd box;
+    for (const openvdb::Vec3d& p : mesh.points) box.expand(p);
+    return box;
+}
+
+std::string unknownError(int rows) {
+    return "the sampling error is not known: " + std::to_string(rows) +
+           " rows to a voxel cannot be halved to compare with; expected an even number";
+}
+
+std::string largeError(double error, double tolerance, int rows) {
+    return "the sampling error is up to " + inShort(error) + ", above the tolerance of " +
+           inShort(tolerance) + "; more than " + std::to_string(rows) + " rows to a voxel lower it";
+}
+
+}  // namespace
+
+DensityResult soupToDensity(const SoupOfTriangles& triangles, const SoupDensityOptions& options,
+                            Progress& progress) {
+    // Choose the lattice, for both parts together.
+    requireValid(options.density);
+    if (!(options.samplingTolerance >= 0)) {
+        throw Error(ErrorKind::Usage, "the tolerance of the sampling is " +
+                                          inShort(options.samplingTolerance) +
+                                          "; it must not be negative");
+    }
+    openvdb::BBoxd bounds = boundsOf(triangles.soup);
+    if (!triangles.solid.points.empty()) bounds.expand(boundsOf(triangles.solid));
+    DensityOptions density = options.density;
+    density.voxelSize = chooseVoxelSize(triangles.name, bounds, options.density);
+
+    // Follow the soup's rows, and filter what they and the solid's surface give.
+    const SoupSource soup(triangles.name, triangles.soup,
+                          {density.voxelSize, options.rowsPerVoxel, &triangles.solid}, progress);
+    std::optional<MeshSource> solid;
+    if (!triangles.solid.triangles.empty()) solid.emplace(triangles.name, triangles.solid);
+    const auto convert = [&](const SoupSource& rows) {
+        std::vector<const BoundarySource*> parts{&rows};
+        if (solid) parts.push_back(&*solid);
+        return surfaceToDensity(JoinedSource(triangles.name, parts), density, progress);
+    };
+    DensityResult result = convert(soup);
+    result.metadata.route = "winding";
+    result.metadata.oversampling = options.rowsPerVoxel;
+    if (options.rowsPerVoxel % 2 != 0) {
+        result.metadata.samplingError = std::numeric_limits<double>::quiet_NaN();
+        result.warnings.push_back(unknownError(options.rowsPerVoxel));
+        return result;
+    }
+
+    // Measure what the rows cannot tell.
+    const DensityResult coarse = convert(*soup.withFewerRows());
+    // Half of the rows along either side are wrong by at least twice as much as all of them, so by
+    // at least as much more.
+    const double error = largestDifference(*result.grid, *coarse.grid);
+    result.metadata.samplingError = error;
+    if (error > options.samplingTolerance) {
+        result.warnings.push_back(
+            largeError(error, options.samplingTolerance, options.rowsPerVoxel));
+    }
+    return result;
+}
+
+}  // namespace bandvox

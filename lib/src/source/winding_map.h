@@ -1,0 +1,58 @@
+#pragma once
+
+#include "source/winding_tree.h"
+
+#include <bandvox/core/progress.h>
+
+#include <openvdb/Types.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace bandvox {
+
+/// Cubes that fill a box, world units.
+struct CellLattice {
+    openvdb::Vec3d origin;  ///< corner of the first
+    double side = 1;
+    openvdb::Coord count;  ///< along each axis
+
+    std::size_t index(const openvdb::Coord& cell) const {
+        return (static_cast<std::size_t>(cell.x()) * count.y() + cell.y()) * count.z() + cell.z();
+    }
+};
+
+/// Where the winding number of a surface with openings is above 0.5: cell by cell.
+class WindingMap {
+  public:
+    enum class State : std::uint8_t {
+        Outside,  ///< all of the cell
+        Inside,   ///< all of the cell
+        Mixed     ///< it has triangles in it, or is too near an opening to tell
+    };
+
+    /// So far away groups of triangles are taken together (WindingTree::collect). What that is wrong
+    /// by shifts an opening a little, and nothing else.
+    static constexpr double kFarAway = 2;
+
+    /// Throws Error(ErrorKind::Memory) before allocating if it would not fit,
+    /// Error(ErrorKind::Interrupted).
+    WindingMap(const WindingTree& tree, const CellLattice& cells, Progress& progress);
+
+    const CellLattice& cells() const { return mCells; }
+    State state(const openvdb::Coord& cell) const { return mState[mCells.index(cell)]; }
+    /// About the winding number there, if it is not mixed.
+    float winding(const openvdb::Coord& cell) const { return mWinding[mCells.index(cell)]; }
+
+  private:
+    struct Block;
+    void divide(const Block& block, WindingTerms& terms);
+    void fill(const Block& block, State state, double winding);
+
+    const WindingTree& mTree;
+    CellLattice mCells;
+    std::vector<State> mState;
+    std::vector<float> mWinding;
+};
+
+}  // namespace bandvox
