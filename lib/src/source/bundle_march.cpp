@@ -15,20 +15,26 @@ using openvdb::BBoxd;
 using openvdb::Coord;
 using openvdb::Vec3d;
 
+constexpr double kInside = WindingMap::kInside;
+
 // Just before a triangle the winding number is asked for so far in front of it, voxels.
 constexpr double kInFront = 0.01;
+
+// What is thinner than this along a row, voxels, is left out: so near to the edge of a lone sheet
+// the winding number cannot be told from that of something enclosed.
+constexpr float kThinnest = 0.02F;
 
 // A crossing of an opening is found to within this, voxels, by so many steps at most.
 constexpr double kPrecision = 0.01;
 constexpr int kMostSteps = 12;
 
 // A cell is smooth if the winding number, whole numbers apart, stays within this and as far
-// away from 0.5.
+// away from what is inside.
 constexpr double kSmooth = 0.2;
-constexpr double kMarginOfSmooth = 0.02;
+constexpr double kMarginOfSmooth = 0.03;
 
-// Places of a coarse lattice agree if they are this far from 0.5. It has this many along a cell's
-// side.
+// Places of a coarse lattice agree if they are this far from what is inside. It has this many along
+// a cell's side.
 constexpr double kClear = 0.15;
 constexpr int kFaceSide = WindingRows::kSide + 1;
 
@@ -172,13 +178,14 @@ bool BundleMarch::passSmooth(Row& row, std::span<const Hit> hits, double end) {
     constexpr double kAlike = 0.4;
     const double whole = std::round(row.winding - *mFraction);
     double winding = whole + *mFraction;
-    if (std::abs(row.winding - winding) > kAlike || (winding > 0.5) != row.isInside) return false;
+    if (std::abs(row.winding - winding) > kAlike || (winding > kInside) != row.isInside)
+        return false;
     double last = winding;
     for (const Hit& hit : hits) last -= hit.leaving;
-    if (mNextIsInside && *mNextIsInside != (last > 0.5)) return false;
+    if (mNextIsInside && *mNextIsInside != (last > kInside)) return false;
     for (const Hit& hit : hits) {
         winding -= hit.leaving;
-        if ((winding > 0.5) != row.isInside) cross(row, hit.x);
+        if ((winding > kInside) != row.isInside) cross(row, hit.x);
     }
     row.at = end;
     row.winding = winding;
@@ -220,8 +227,8 @@ std::optional<bool> BundleMarch::likelyAtEnd(const Row& row, double end) {
         low = std::min(low, winding);
         high = std::max(high, winding);
     }
-    if (low > 0.5 + kClear) return true;
-    if (high < 0.5 - kClear) return false;
+    if (low > kInside + kClear) return true;
+    if (high < kInside - kClear) return false;
     return std::nullopt;
 }
 
@@ -242,13 +249,13 @@ void BundleMarch::passRough(Row& row, std::span<const Hit> hits, double end) {
         const double front = hit.x - kInFront;
         if (front > row.at || !row.isKnown) {
             const double winding = windingAt(row, front);
-            if ((winding > 0.5) != row.isInside) cross(row, findCrossing(row, front, winding));
+            if ((winding > kInside) != row.isInside) cross(row, findCrossing(row, front, winding));
             row.winding = winding;
             row.isKnown = true;
         }
         row.at = hit.x;
         row.winding -= hit.leaving;
-        if ((row.winding > 0.5) != row.isInside) cross(row, hit.x);
+        if ((row.winding > kInside) != row.isInside) cross(row, hit.x);
     }
     leave(row, end);
 }
@@ -261,7 +268,7 @@ void BundleMarch::leave(Row& row, double end) {
         return;
     }
     const double winding = windingAt(row, end);
-    const bool isInside = mNextIsInside ? *mNextIsInside : winding > 0.5;
+    const bool isInside = mNextIsInside ? *mNextIsInside : winding > kInside;
     if (isInside != row.isInside) cross(row, findCrossing(row, end, winding));
     row.at = end;
     row.winding = winding;
@@ -271,29 +278,28 @@ void BundleMarch::leave(Row& row, double end) {
 void BundleMarch::cross(Row& row, double x) {
     row.isInside = !row.isInside;
     x = std::clamp(x, mBegin, mEnd);
-    // Nothing is inside between two crossings at one place.
     const float last = row.crossings.empty() ? 0 : row.crossings.back();
     const float place = std::max(static_cast<float>(x), last);
-    if (!row.isInside && place == last) {
+    if (!row.isInside && place - last < kThinnest) {
         row.crossings.pop_back();
     } else {
         row.crossings.push_back(place);
     }
 }
 
-// Where the winding number passes 0.5 between a row's place and `end`, no triangle being there.
+// Where the winding number passes kInside between a row's place and `end`, no triangle being there.
 double BundleMarch::findCrossing(const Row& row, double end, double windingAtEnd) {
     double low = row.at, high = end;
     if (high - low <= kPrecision) return high;
-    double atLow = (row.isKnown ? row.winding : windingAt(row, low)) - 0.5;
-    double atHigh = windingAtEnd - 0.5;
+    double atLow = (row.isKnown ? row.winding : windingAt(row, low)) - kInside;
+    double atHigh = windingAtEnd - kInside;
     // By the rule of Illinois: false position that halves the weight of an end that stays.
     int stayed = 0;
     for (int step = 0; step < kMostSteps && high - low > kPrecision; ++step) {
         if ((atLow > 0) == (atHigh > 0)) return high;
         const double x = std::clamp(low + (high - low) * atLow / (atLow - atHigh),
                                     low + 0.1 * kPrecision, high - 0.1 * kPrecision);
-        const double at = windingAt(row, x) - 0.5;
+        const double at = windingAt(row, x) - kInside;
         if (std::abs(at) < 1e-3) return x;
         if ((at > 0) == (atHigh > 0)) {
             high = x;

@@ -142,6 +142,19 @@ std::vector<CappedHole> holesOfSolids(const std::vector<HoleOfPiece>& all,
     return holes;
 }
 
+SeparatedSoup separate(Mesh& mesh, MeshComponents& components, std::size_t firstCap,
+                       Capping capping) {
+    switch (capping) {
+        case Capping::All:
+            return {};
+        case Capping::Sensible:
+            return separateSoup(mesh, components, firstCap);
+        case Capping::None:
+            return separateAll(mesh, components, firstCap);
+    }
+    return {};
+}
+
 void requireNoProblem(const CloseMeshOptions& options, const CloseMeshReport& report) {
     if (options.requireSolid && !report.problem.empty()) {
         throw Error(ErrorKind::Result, report.problem);
@@ -235,12 +248,9 @@ ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progr
     advance();
     const std::size_t firstCap = mesh.triangles.size();
     const std::vector<HoleOfPiece> holes = capHoles(mesh, components);
-    SeparatedSoup separated;
-    if (options.capping == Capping::Sensible) {
-        separated = separateSoup(mesh, components, firstCap);
-    } else if (options.capping == Capping::None) {
-        separated = separateAll(mesh, components, firstCap);
-    }
+    SeparatedSoup separated = report.problem.empty()
+                                  ? separate(mesh, components, firstCap, options.capping)
+                                  : SeparatedSoup();
     report.soupPieces = separated.pieces;
     report.soupTriangles = separated.soup.triangles.size();
     report.holes = holesOfSolids(holes, separated.isSoup);

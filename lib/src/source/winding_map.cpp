@@ -67,10 +67,10 @@ void WindingMap::divide(const Block& block, WindingTerms& terms) {
     if (!mTree.mayMeet(box)) {
         mTree.collect({region.center, 0.5 * region.radius}, kFarAway, terms);
         const double winding = terms.at(region.center);
-        const double margin = std::abs(winding - 0.5) - kDoubt;
+        const double margin = std::abs(winding - kInside) - kDoubt;
         if (margin > 0 &&
             mTree.gradientBound(region, margin / region.radius) * region.radius < margin) {
-            fill(block, winding > 0.5 ? State::Inside : State::Outside, winding);
+            fill(block, winding > kInside ? State::Inside : State::Outside, winding);
             return;
         }
     }

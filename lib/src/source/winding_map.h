@@ -22,7 +22,7 @@ struct CellLattice {
     }
 };
 
-/// Where the winding number of a surface with openings is above 0.5: cell by cell.
+/// Where a surface with openings winds around, by more than half: cell by cell.
 class WindingMap {
   public:
     enum class State : std::uint8_t {
@@ -31,8 +31,12 @@ class WindingMap {
         Mixed     ///< it has triangles in it, or is too near an opening to tell
     };
 
-    /// So far away groups of triangles are taken together (WindingTree::collect). What that is wrong
-    /// by shifts an opening a little, and nothing else.
+    /// The winding number of what is inside is above this. On the two sides of a sheet that
+    /// encloses nothing it comes up to 0.5, and all that is computed is off a little.
+    static constexpr double kInside = 0.51;
+
+    /// So far away groups of triangles are taken together (WindingTree::collect). What that is
+    /// wrong by shifts an opening a little, and nothing else.
     static constexpr double kFarAway = 2;
 
     /// Throws Error(ErrorKind::Memory) before allocating if it would not fit,

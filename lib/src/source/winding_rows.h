@@ -15,11 +15,11 @@
 namespace bandvox {
 
 /// Where rows along x enter and leave the places that a surface with openings winds around: those
-/// whose winding number is above 0.5, in its box. Rows are kept in bundles, the rows that pass
-/// through a square of kSide by kSide voxels.
+/// whose winding number is above WindingMap::kInside, in its box. Rows are kept in bundles, the
+/// rows that pass through a square of kSide by kSide voxels.
 ///
 /// Crossings at triangles are as exact as doubles. In openings the winding number is followed to
-/// the place where it is 0.5, to a hundredth of a voxel or so. What enters and leaves an opening
+/// the place where it is that, to a hundredth of a voxel or so. What enters and leaves an opening
 /// within a cell of kSide voxels, hitting no triangle there, may be missed.
 class WindingRows {
   public:

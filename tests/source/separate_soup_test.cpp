@@ -1,0 +1,130 @@
+// Which pieces of a mesh are capped, and which are left to their winding number.
+
+#include "soup_meshes.h"
+
+#include <bandvox/core/error.h>
+#include <bandvox/source/close_mesh.h>
+#include <bandvox/source/winding_number.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace bandvox {
+namespace {
+
+using openvdb::Vec3d;
+
+ClosedMesh close(const Mesh& mesh, Capping capping = Capping::Sensible) {
+    return closeMesh(mesh, {.capping = capping});
+}
+
+// The octants of a ball, pulled apart.
+Mesh octants(double gap) {
+    Mesh mesh;
+    const Mesh ball = test::sphere(Vec3d(0.0), 1, 16, 32);
+    for (int octant = 0; octant < 8; ++octant) {
+        const Vec3d sign(octant & 1 ? 1 : -1, octant & 2 ? 1 : -1, octant & 4 ? 1 : -1);
+        Mesh part = ball;
+        std::erase_if(part.triangles, [&](const openvdb::Vec3I& t) {
+            const Vec3d sum = ball.points[t[0]] + ball.points[t[1]] + ball.points[t[2]];
+            return sum.x() * sign.x() < 0 || sum.y() * sign.y() < 0 || sum.z() * sign.z() < 0;
+        });
+        for (Vec3d& p : part.points) p += gap * sign;
+        test::append(mesh, part);
+    }
+    return mesh;
+}
+
+TEST(SeparateSoup, PanelsAreSoup) {
+    for (const Mesh& mesh : {test::panels(0.02), test::turned(test::panels(0.02)),
+                             test::reversed(test::panels(0.05))}) {
+        const ClosedMesh closed = close(mesh);
+        EXPECT_EQ(closed.report.soupPieces, 6u);
+        EXPECT_EQ(closed.report.soupTriangles, 12u);
+        EXPECT_TRUE(closed.mesh.triangles.empty());
+        EXPECT_TRUE(closed.report.holes.empty());
+        EXPECT_TRUE(closed.report.problem.empty());
+        EXPECT_TRUE(test::hasWarning(closed.report, "winding number"));
+        // It faces outward.
+        EXPECT_NEAR(WindingNumber(closed.soup).exactAt(Vec3d(0.1)), 1, 0.1);
+    }
+}
+
+TEST(SeparateSoup, ShellsThatWereCutUpAreSoup) {
+    const ClosedMesh closed = close(octants(0.01));
+    EXPECT_EQ(closed.report.soupPieces, 8u);
+    EXPECT_NEAR(WindingNumber(closed.soup).exactAt(Vec3d(0.1)), 1, 0.1);
+}
+
+TEST(SeparateSoup, ShredsAreSoup) {
+    // More pieces than are looked at one by one.
+    const ClosedMesh closed = close(test::shredded(test::sphere(Vec3d(0.0), 1, 40, 60), 0.1));
+    EXPECT_EQ(closed.report.soupPieces, closed.report.components);
+    EXPECT_GT(closed.report.soupPieces, 4000u);
+}
+
+TEST(SeparateSoup, WhatCapsCloseIsCapped) {
+    Mesh hemisphere = test::sphere(Vec3d(0.0), 1, 20, 30);
+    std::erase_if(hemisphere.triangles, [&](const openvdb::Vec3I& t) {
+        return hemisphere.points[t[0]].y() + hemisphere.points[t[1]].y() > 1e-9;
+    });
+    Mesh box = test::cube(Vec3d(0.0), 1);
+    box.triangles.resize(10);
+    Mesh tetrahedron = test::tetrahedron(Vec3d(0.0), 1);
+    tetrahedron.triangles.resize(3);
+    Mesh many;
+    for (int i = 0; i < 1500; ++i) {
+        Mesh one = test::tetrahedron(2.0 * Vec3d(i % 12, i / 12 % 12, i / 144), 1);
+        one.triangles.erase(one.triangles.begin() + i % 4);
+        test::append(many, one);
+    }
+    Mesh thin = test::thinned(test::sphere(Vec3d(0.0), 1, 60, 90), 0.01, 5);
+    for (Mesh* mesh : {&hemisphere, &box, &tetrahedron, &many, &thin}) {
+        const ClosedMesh closed = close(*mesh);
+        EXPECT_EQ(closed.report.soupPieces, 0u) << mesh->triangles.size();
+        EXPECT_TRUE(closed.soup.triangles.empty());
+        EXPECT_TRUE(test::isClosed(closed.mesh));
+    }
+}
+
+TEST(SeparateSoup, TakesTheSoupAndLeavesTheRest) {
+    Mesh mesh = test::panels(0.02);
+    Mesh ball = test::sphere(Vec3d(4, 0, 0), 1, 20, 30);
+    ball.triangles.resize(ball.triangles.size() - 20);
+    test::append(mesh, ball);
+    const ClosedMesh closed = close(mesh);
+    EXPECT_EQ(closed.report.soupPieces, 6u);
+    EXPECT_EQ(closed.report.components, 7u);
+    EXPECT_EQ(closed.report.holes.size(), 1u);
+    EXPECT_TRUE(test::isClosed(closed.mesh));
+    EXPECT_NEAR(test::volume(closed.mesh), 4.0, 0.2);
+    EXPECT_EQ(closed.soup.triangles.size(), 12u);
+}
+
+TEST(SeparateSoup, SheetsThatEncloseNothingAreNoSoup) {
+    // Two panels of a box, far apart.
+    Mesh mesh = test::panels(0.02);
+    mesh.triangles.resize(4);
+    EXPECT_THROW(close(mesh), Error);
+    // Beside a soup they are left away.
+    Mesh sheet = mesh;
+    for (Vec3d& p : sheet.points) p += Vec3d(10, 0, 0);
+    Mesh both = test::panels(0.02);
+    test::append(both, sheet);
+    const ClosedMesh closed = close(both);
+    EXPECT_EQ(closed.report.soupPieces, 6u);
+    EXPECT_TRUE(closed.mesh.triangles.empty());
+}
+
+TEST(SeparateSoup, AllOrNothingCanBeAskedFor) {
+    const Mesh mesh = test::sphere(Vec3d(0.0), 1, 20, 30);
+    const ClosedMesh none = close(mesh, Capping::None);
+    EXPECT_EQ(none.soup.triangles.size(), mesh.triangles.size());
+    EXPECT_TRUE(none.mesh.triangles.empty());
+    // Capped, panels are flat.
+    EXPECT_THROW(close(test::panels(0.02), Capping::All), Error);
+}
+
+}  // namespace
+}  // namespace bandvox
