@@ -1,7 +1,7 @@
 // What becomes of meshes that are no solids yet: open, overlapping, inside out, one-sided.
 
 #include "run_command.h"
-#include "source/test_meshes.h"
+#include "source/soup_meshes.h"
 
 #include <bandvox/grid/density_grid.h>
 
@@ -171,6 +171,51 @@ TEST_F(AnyMesh, ManyPiecesAreNoTrouble) {
     }
     const DensityMetadata metadata = converted(mesh);
     EXPECT_NEAR(metadata.gridVolume, 10000.0 / 6, 1e-3 * 10000 / 6);
+}
+
+TEST_F(AnyMesh, WhatNoCapsCloseGoesByItsWindingNumber) {
+    const DensityMetadata box = converted(test::panels(0.01));
+    EXPECT_EQ(box.route, "winding");
+    EXPECT_NEAR(box.gridVolume, 8, 0.1);
+    EXPECT_GT(box.samplingError, 0);
+    EXPECT_LT(box.samplingError, 0.1);
+    EXPECT_NE(mErrors.find("6 pieces of 12 triangles are not closed"), std::string::npos)
+        << mErrors;
+    EXPECT_NE(mErrors.find("measured by halving the samples"), std::string::npos) << mErrors;
+    EXPECT_EQ(run({"convert", "a.obj", "-o", "b.vdb", "-r", "64", "--strict"}).status, 3);
+    const RunResult finer =
+        run({"convert", "a.obj", "-o", "b.vdb", "-r", "64", "--tolerance", "1e-3"});
+    EXPECT_EQ(finer.status, 4);
+    EXPECT_NE(finer.err.find("sampling error"), std::string::npos) << finer.err;
+    EXPECT_EQ(run({"convert", "a.obj", "-o", "b.vdb", "-r", "64", "--route", "exact"}).status, 4);
+    EXPECT_EQ(mFolder.contents(), (Names{"a.obj", "a.vdb"}));
+    const Json report = Json::parse(run({"info", "a.obj", "--json"}).out);
+    EXPECT_EQ(report.at("soup_pieces"), 6);
+    EXPECT_EQ(report.at("soup_triangles"), 12);
+    EXPECT_TRUE(report.at("volume").is_null());
+    const RunResult picture = run({"render", "a.vdb", "-o", "a.png", "--res", "16x16"});
+    EXPECT_EQ(picture.status, 0) << picture.err;
+}
+
+TEST_F(AnyMesh, OnlyTheSoupOfAMeshDoes) {
+    Mesh mesh = test::panels(0.01);
+    test::append(mesh, test::cube(Vec3d(3, 0, 0), 1));
+    const DensityMetadata both = converted(mesh);
+    EXPECT_EQ(both.route, "winding");
+    EXPECT_NEAR(both.gridVolume, 9, 0.1);
+    EXPECT_NE(mErrors.find("12 triangles set aside"), std::string::npos) << mErrors;
+}
+
+TEST_F(AnyMesh, TheRouteCanBeAskedFor) {
+    const Mesh cube = test::turned(test::cube(Vec3d(-1.0), 2));
+    const DensityMetadata winding =
+        converted(cube, {"--route", "winding", "--oversample", "6", "--tolerance", "0.05"});
+    EXPECT_EQ(winding.route, "winding");
+    EXPECT_EQ(winding.oversampling, 6);
+    EXPECT_NEAR(winding.gridVolume, 8, 0.01);
+    EXPECT_EQ(run({"convert", "a.obj", "-o", "b.vdb", "--oversample", "4"}).status, 2);
+    EXPECT_EQ(run({"convert", "a.obj", "-o", "b.vdb", "--route", "sampled"}).status, 2);
+    EXPECT_EQ(run({"convert", "shape:cube", "-o", "b.vdb", "--route", "winding"}).status, 2);
 }
 
 }  // namespace

@@ -40,11 +40,13 @@ double differenceInLeaves(const openvdb::FloatGrid& a, const openvdb::FloatGrid&
     return result;
 }
 
-// The largest difference where `a` has tiles.
+// The largest difference where `a` has tiles, active or not, of `b` at their first voxels. Where
+// `b` is finer, its own tiles and leaf nodes tell.
 double differenceInTiles(const openvdb::FloatGrid& a, const openvdb::FloatGrid& b) {
     double result = 0;
-    for (auto tile = a.cbeginValueOn(); tile; ++tile) {
-        if (tile.isVoxelValue()) continue;
+    auto tile = a.cbeginValueAll();
+    tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
+    for (; tile; ++tile) {
         const openvdb::Coord at = tile.getBoundingBox().min();
         if (b.tree().probeConstLeaf(at) != nullptr) continue;
         result = std::max<double>(result, std::abs(*tile - b.tree().getValue(at)));
@@ -55,7 +57,8 @@ double differenceInTiles(const openvdb::FloatGrid& a, const openvdb::FloatGrid& 
 }  // namespace
 
 double largestDifference(const openvdb::FloatGrid& a, const openvdb::FloatGrid& b) {
-    return std::max({differenceInLeaves(a, b), differenceInLeaves(b, a), differenceInTiles(a, b)});
+    return std::max({differenceInLeaves(a, b), differenceInLeaves(b, a), differenceInTiles(a, b),
+                     differenceInTiles(b, a)});
 }
 
 }  // namespace bandvox
