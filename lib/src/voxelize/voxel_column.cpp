@@ -32,7 +32,8 @@ BlockRows rowsInGrid(const BlockRows& rows, ScanAxis axis) {
         }
     }
     // Along z, the bytes are now z and the bits y.
-    if (axis == ScanAxis::Z) std::transform(result.begin(), result.end(), result.begin(), transposed);
+    if (axis == ScanAxis::Z)
+        std::transform(result.begin(), result.end(), result.begin(), transposed);
     return result;
 }
 
@@ -71,8 +72,7 @@ ColumnVoxels binaryColumn(const VoxelLattice& lattice, openvdb::Coord block,
 BitColumn aboveThreshold(const SubSampleColumns& samples, int threshold) {
     BitColumn bits;
     countSubSamples(
-        samples,
-        [&](const SolidRun& run) { bits.addUncrossed(run.begin, run.end, kAllRows); },
+        samples, [&](const SolidRun& run) { bits.addUncrossed(run.begin, run.end, kAllRows); },
         [&](int x, const BlockCounts& counts) {
             BlockRows rows{};
             for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -103,8 +103,7 @@ ColumnVoxels fractionColumn(const VoxelLattice& lattice, openvdb::Coord block,
             return addSolid({x, x + 1});
         }
         block.x() = x;
-        auto leaf =
-            std::make_unique<VoxelLeaf>(lattice.inGrid(block) << kBlockLog2, 0.0F, false);
+        auto leaf = std::make_unique<VoxelLeaf>(lattice.inGrid(block) << kBlockLog2, 0.0F, false);
         float* values = leaf->buffer().data();
         for (int i = 0; i < static_cast<int>(counts.size()); ++i) {
             if (counts[i] == 0) continue;
@@ -139,9 +138,8 @@ ColumnVoxels makeColumn(const VoxelLattice& lattice, const VoxelOptions& options
         parts[i] = samples((block << 1) + openvdb::Coord(0, i >> 1, i & 1));
     }
     ColumnVoxels column =
-        options.fraction
-            ? fractionColumn(lattice, block, parts)
-            : binaryColumn(lattice, block, aboveThreshold(parts, options.threshold));
+        options.fraction ? fractionColumn(lattice, block, parts)
+                         : binaryColumn(lattice, block, aboveThreshold(parts, options.threshold));
     for (const BitColumn& part : parts) {
         column.isClosed = column.isClosed && part.isClosed;
         column.isInsideOut = column.isInsideOut || part.isInsideOut;

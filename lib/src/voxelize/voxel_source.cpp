@@ -60,9 +60,12 @@ class ConstantBox {
         using Upper = GridTree::RootNodeType::ChildNodeType;
         switch (mAccessor.getValueDepth(voxel)) {
             case -1:
-            case 0: return Upper::DIM;
-            case 1: return Upper::ChildNodeType::DIM;
-            default: return kLeafSide;
+            case 0:
+                return Upper::DIM;
+            case 1:
+                return Upper::ChildNodeType::DIM;
+            default:
+                return kLeafSide;
         }
     }
 
@@ -97,8 +100,9 @@ VoxelSource::VoxelSource(std::string name, openvdb::FloatGrid::ConstPtr grid)
     }
     const openvdb::CoordBBox active = mGrid->evalActiveVoxelBoundingBox();
     if (active.empty()) refuse(mName, "no voxel of the grid is active", "at least one");
-    mBounds = mGrid->transform().indexToWorld(openvdb::BBoxd(
-        active.min().asVec3d() - openvdb::Vec3d(kHalf), active.max().asVec3d() + openvdb::Vec3d(kHalf)));
+    mBounds = mGrid->transform().indexToWorld(
+        openvdb::BBoxd(active.min().asVec3d() - openvdb::Vec3d(kHalf),
+                       active.max().asVec3d() + openvdb::Vec3d(kHalf)));
 }
 
 std::optional<float> VoxelSource::constantIn(const openvdb::BBoxd& box) const {

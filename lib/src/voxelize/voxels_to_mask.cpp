@@ -16,8 +16,8 @@ void describeLike(openvdb::GridBase& grid, const openvdb::GridBase& other) {
 
 openvdb::BoolGrid::Ptr voxelsToMask(const openvdb::FloatGrid& voxels) {
     // Start with all that is active; take away what is less than half inside.
-    auto mask = openvdb::BoolGrid::create(std::make_shared<openvdb::BoolTree>(
-        voxels.tree(), false, true, openvdb::TopologyCopy()));
+    auto mask = openvdb::BoolGrid::create(
+        std::make_shared<openvdb::BoolTree>(voxels.tree(), false, true, openvdb::TopologyCopy()));
     for (auto value = voxels.cbeginValueOn(); value; ++value) {
         if (*value >= kInsideMask) continue;
         if (value.isVoxelValue()) {
@@ -34,8 +34,8 @@ openvdb::BoolGrid::Ptr voxelsToMask(const openvdb::FloatGrid& voxels) {
 }
 
 openvdb::FloatGrid::Ptr maskToVoxels(const openvdb::BoolGrid& mask) {
-    auto voxels = openvdb::FloatGrid::create(std::make_shared<openvdb::FloatTree>(
-        mask.tree(), 0.0F, 1.0F, openvdb::TopologyCopy()));
+    auto voxels = openvdb::FloatGrid::create(
+        std::make_shared<openvdb::FloatTree>(mask.tree(), 0.0F, 1.0F, openvdb::TopologyCopy()));
     describeLike(*voxels, mask);
     voxels->setName("density");
     voxels->setGridClass(openvdb::GRID_FOG_VOLUME);

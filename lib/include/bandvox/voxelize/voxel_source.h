@@ -13,8 +13,8 @@ namespace bandvox {
 class VoxelSource final : public FieldSource {
   public:
     /// `grid`: active wherever it is not 0, as meshToVoxels and fieldToVoxels make it; it must not
-    /// be changed later. Throws Error(ErrorKind::Input) if its background is not 0, its transform is
-    /// not linear, or nothing is active.
+    /// be changed later. Throws Error(ErrorKind::Input) if its background is not 0, its transform
+    /// is not linear, or nothing is active.
     VoxelSource(std::string name, openvdb::FloatGrid::ConstPtr grid);
 
     std::string name() const override { return mName; }

@@ -14,9 +14,9 @@ enum class ScanAxis { X, Y, Z };
 /// The lattice on which a solid is voxelized, and what is asked of a voxel. Voxel i's centre lies
 /// at i · (voxel size) in the world. Eight sub-samples lie at i ± 1/4, the centres of its octants.
 struct VoxelOptions {
-    int resolution = 256;  ///< voxels along the longest side of the source's box; 1 to 2^20
-    double voxelSize = 0;  ///< world units; if > 0 it is used instead of `resolution`
-    int threshold = 0;     ///< sub-samples that have to be inside, 1 to 8; 0: its centre instead
+    int resolution = 256;   ///< voxels along the longest side of the source's box; 1 to 2^20
+    double voxelSize = 0;   ///< world units; if > 0 it is used instead of `resolution`
+    int threshold = 0;      ///< sub-samples that have to be inside, 1 to 8; 0: its centre instead
     bool fraction = false;  ///< values are the share of sub-samples inside; with threshold 0 only
     ScanAxis axis = ScanAxis::X;  ///< of the rows; voxels of a closed mesh do not depend on it
 
