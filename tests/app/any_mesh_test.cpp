@@ -197,6 +197,19 @@ TEST_F(AnyMesh, WhatNoCapsCloseGoesByItsWindingNumber) {
     EXPECT_EQ(picture.status, 0) << picture.err;
 }
 
+TEST_F(AnyMesh, SoupsBecomeVoxels) {
+    write("panels.obj", test::panels(0.01));
+    const RunResult result =
+        run({"voxelize", "panels.obj", "-o", "v.vdb", "--voxel-size", "0.0517"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(readVdb(mFolder / "v.vdb").front());
+    EXPECT_NEAR(densityIntegral(*grid), 8, 0.5);
+    const RunResult gpu =
+        run({"voxelize", "panels.obj", "-o", "w.vdb", "-r", "20", "--backend", "gpu"});
+    EXPECT_EQ(gpu.status, 2);
+    EXPECT_NE(gpu.err.find("winding number"), std::string::npos) << gpu.err;
+}
+
 TEST_F(AnyMesh, OnlyTheSoupOfAMeshDoes) {
     Mesh mesh = test::panels(0.01);
     test::append(mesh, test::cube(Vec3d(3, 0, 0), 1));
@@ -207,7 +220,7 @@ TEST_F(AnyMesh, OnlyTheSoupOfAMeshDoes) {
 }
 
 TEST_F(AnyMesh, TheRouteCanBeAskedFor) {
-    const Mesh cube = test::turned(test::cube(Vec3d(-1.0), 2));
+    const Mesh cube = test::askew(test::cube(Vec3d(-1.0), 2));
     const DensityMetadata winding =
         converted(cube, {"--route", "winding", "--oversample", "6", "--tolerance", "0.05"});
     EXPECT_EQ(winding.route, "winding");

@@ -32,9 +32,9 @@ openvdb::FloatGrid::Ptr exact(const Mesh& mesh, double voxelSize) {
 
 // Closed meshes, taken as soups: what the exact route makes of them is the truth.
 std::vector<Mesh> solids() {
-    Mesh hollow = test::turned(test::cube(Vec3d(-1.0), 2));
-    test::append(hollow, test::reversed(test::turned(test::cube(Vec3d(-0.6), 1.2))));
-    return {test::cube(Vec3d(-1.03, -0.97, -1.01), 2), test::turned(test::cube(Vec3d(-1.0), 2)),
+    Mesh hollow = test::askew(test::cube(Vec3d(-1.0), 2));
+    test::append(hollow, test::reversed(test::askew(test::cube(Vec3d(-0.6), 1.2))));
+    return {test::cube(Vec3d(-1.03, -0.97, -1.01), 2), test::askew(test::cube(Vec3d(-1.0), 2)),
             test::sphere(Vec3d(0.1, 0.2, 0.3), 1, 60, 90), hollow};
 }
 
@@ -60,9 +60,9 @@ TEST(SoupToDensity, StaysWithinTheErrorThatItStates) {
 }
 
 TEST(SoupToDensity, PanelsMakeABox) {
-    const openvdb::FloatGrid::Ptr truth = exact(test::turned(test::cube(Vec3d(-1.0), 2)), 0.05);
+    const openvdb::FloatGrid::Ptr truth = exact(test::askew(test::cube(Vec3d(-1.0), 2)), 0.05);
     const DensityResult result =
-        soupToDensity({"panels", test::turned(test::panels(0.002)), {}}, voxelsOf(0.05));
+        soupToDensity({"panels", test::askew(test::panels(0.002)), {}}, voxelsOf(0.05));
     EXPECT_LT(largestDifference(*result.grid, *truth), 0.03);
     EXPECT_NEAR(result.metadata.gridVolume, 8, 0.01);
     EXPECT_NEAR(result.metadata.sourceVolume, result.metadata.gridVolume, 1e-3);
@@ -98,7 +98,7 @@ TEST(SoupToDensity, UnitesTheSoupWithASolid) {
 }
 
 TEST(SoupToDensity, MovesWithTheMesh) {
-    const Mesh mesh = test::turned(test::panels(0.05));
+    const Mesh mesh = test::askew(test::panels(0.05));
     const DensityResult here = soupToDensity({"soup", mesh, {}}, voxelsOf(0.125));
     Mesh moved = mesh;
     for (Vec3d& p : moved.points) p += 0.125 * Vec3d(8, -16, 24);

@@ -37,7 +37,7 @@ Mesh octants(double gap) {
 }
 
 TEST(SeparateSoup, PanelsAreSoup) {
-    for (const Mesh& mesh : {test::panels(0.02), test::turned(test::panels(0.02)),
+    for (const Mesh& mesh : {test::panels(0.02), test::askew(test::panels(0.02)),
                              test::reversed(test::panels(0.05))}) {
         const ClosedMesh closed = close(mesh);
         EXPECT_EQ(closed.report.soupPieces, 6u);

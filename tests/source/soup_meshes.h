@@ -51,7 +51,7 @@ inline Mesh thinned(Mesh mesh, double part, unsigned seed) {
 }
 
 /// Turned, so that nothing lies along an axis.
-inline Mesh turned(Mesh mesh) {
+inline Mesh askew(Mesh mesh) {
     for (openvdb::Vec3d& p : mesh.points) {
         p = openvdb::Vec3d(0.36 * p.x() + 0.48 * p.y() - 0.8 * p.z(), -0.8 * p.x() + 0.6 * p.y(),
                            0.48 * p.x() + 0.64 * p.y() + 0.6 * p.z());

@@ -108,9 +108,9 @@ void expectRight(const Mesh& mesh, double voxelSize, int perSide, double most) {
 }
 
 TEST(WindingRows, FollowTheWindingNumber) {
-    expectRight(test::turned(test::panels(0.05)), 0.05, 2, 0);
+    expectRight(test::askew(test::panels(0.05)), 0.05, 2, 0);
     expectRight(test::panels(0.05), 0.05, 2, 0);
-    expectRight(test::turned(test::panels(0.3)), 0.05, 2, 0);
+    expectRight(test::askew(test::panels(0.3)), 0.05, 2, 0);
     const Mesh ball = test::sphere(Vec3d(0.0), 1, 40, 60);
     expectRight(test::shredded(ball, 0.1), 0.05, 2, 0.002);
     expectRight(test::shredded(ball, 0.5), 0.05, 2, 0.005);
@@ -126,7 +126,7 @@ TEST(WindingRows, UniteWhatOverlapsAndKeepCavities) {
 }
 
 TEST(SoupSource, VolumeAndClosure) {
-    const SoupSource source("panels", test::turned(test::panels(0.01)),
+    const SoupSource source("panels", test::askew(test::panels(0.01)),
                             {.voxelSize = 0.05, .rowsPerVoxel = 4});
     EXPECT_NEAR(source.volume(), 8, 0.02);
     EXPECT_NEAR(source.withFewerRows()->volume(), 8, 0.1);
@@ -154,7 +154,7 @@ TEST(SoupSource, VolumeAndClosure) {
 }
 
 TEST(SoupSource, RegionsShareTheSamples) {
-    const SoupSource source("panels", test::turned(test::panels(0.1)), {.voxelSize = 0.1});
+    const SoupSource source("panels", test::askew(test::panels(0.1)), {.voxelSize = 0.1});
     const auto count = [&](const Vec3d& low, const Vec3d& size) {
         std::vector<SurfaceSample> samples;
         for (std::size_t i = 0; i < source.elementCount(); ++i) {

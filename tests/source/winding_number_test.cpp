@@ -32,7 +32,7 @@ struct Case {
 std::vector<Case> cases() {
     return {{"ball", test::sphere(Vec3d(0.0), 1, 40, 60)},
             {"noisy ball", noisyBall()},
-            {"panels", test::turned(test::panels(0.1))},
+            {"panels", test::askew(test::panels(0.1))},
             {"shreds", test::shredded(test::sphere(Vec3d(0.0), 1, 40, 60), 0.2)},
             {"half of a ball", test::thinned(test::sphere(Vec3d(0.0), 1, 40, 60), 0.5, 3)},
             {"one triangle", {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}}}}};
@@ -52,7 +52,7 @@ std::vector<Vec3d> placesAround(const Mesh& mesh, int count) {
 }
 
 TEST(WindingNumber, OfAClosedSurfaceIsWhole) {
-    const WindingNumber winding(test::turned(test::cube(Vec3d(-1.0), 2)));
+    const WindingNumber winding(test::askew(test::cube(Vec3d(-1.0), 2)));
     EXPECT_NEAR(winding.exactAt(Vec3d(0.1, 0.2, -0.3)), 1, 1e-14);
     EXPECT_NEAR(winding.exactAt(Vec3d(2, 0.2, -0.3)), 0, 1e-14);
     const WindingNumber inward(test::reversed(noisyBall()));
@@ -121,7 +121,7 @@ TEST(WindingNumber, TermsHoldForAWholeRegion) {
 }
 
 TEST(WindingNumber, DoesNotMindScaleOrPlace) {
-    const Mesh mesh = test::turned(test::panels(0.1));
+    const Mesh mesh = test::askew(test::panels(0.1));
     const WindingNumber winding(mesh);
     for (const auto& [scale, shift] :
          {std::pair(1e-6, 0.0), {1e6, 0.0}, {1.0, 1e5}, {1e-3, 10.0}}) {

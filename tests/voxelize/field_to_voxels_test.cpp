@@ -79,6 +79,26 @@ TEST(FieldToVoxels, TakesWhatIsAtLeastHalf) {
     EXPECT_EQ(fieldToVoxels(inner, {.voxelSize = 0.1}).voxels, 125);
 }
 
+TEST(FieldToVoxels, TakesSubSamplesAlongAnyAxis) {
+    const auto field = makeShapeField("shape:torus");
+    for (const ScanAxis axis : {ScanAxis::X, ScanAxis::Y, ScanAxis::Z}) {
+        const VoxelResult result =
+            fieldToVoxels(*field, {.voxelSize = 0.0625, .fraction = true, .axis = axis});
+        for (auto voxel = CoordBBox(Coord(-17), Coord(17)).begin(); voxel; ++voxel) {
+            float sum = 0;
+            for (int i = 0; i < 8; ++i) {
+                const Vec3d place(i & 1, i >> 1 & 1, i >> 2);
+                float value = 0;
+                field->sampleRow(0.0625 * ((*voxel).asVec3d() + 0.5 * place - Vec3d(0.25)),
+                                 Vec3d(0.0), {&value, 1});
+                sum += value;
+            }
+            ASSERT_EQ(result.grid->tree().getValue(*voxel), sum / 8) << *voxel;
+        }
+    }
+    EXPECT_EQ(kindOfFailure(*field, {.threshold = 9}), ErrorKind::Usage);
+}
+
 TEST(FieldToVoxels, IsTheSameForAnyNumberOfThreads) {
     const auto field = makeShapeField("shape:torus");
     const auto make = [&](int threads) {

@@ -1,5 +1,6 @@
 #include "source/test_meshes.h"
 #include "voxelize/exact_winding.h"
+#include "voxelize/voxel_meshes.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/parallel.h>
@@ -39,32 +40,6 @@ ErrorKind kindOfFailure(const Mesh& mesh, const VoxelOptions& options,
     return ErrorKind::Runtime;
 }
 
-/// Points rounded to whole numbers of 1 / `parts`.
-Mesh snapped(Mesh mesh, double parts) {
-    for (Vec3d& p : mesh.points) {
-        for (int axis = 0; axis < 3; ++axis) p[axis] = std::round(p[axis] * parts) / parts;
-    }
-    return mesh;
-}
-
-Mesh octahedron(const Vec3d& center, double radius) {
-    Mesh mesh;
-    for (int axis = 0; axis < 3; ++axis) {
-        for (const double side : {radius, -radius}) {
-            mesh.points.push_back(center);
-            mesh.points.back()[axis] += side;
-        }
-    }
-    for (unsigned i = 0; i < 8; ++i) {
-        const unsigned x = i & 1, y = i >> 1 & 1, z = i >> 2;
-        mesh.triangles.emplace_back(x, 2 + y, 4 + z);
-        if ((x + y + z) % 2 == 1) {
-            std::swap(mesh.triangles.back()[1], mesh.triangles.back()[2]);
-        }
-    }
-    return mesh;
-}
-
 /// The voxels of a mesh's box, and two more on each side.
 CoordBBox boxAround(const Mesh& mesh) {
     const openvdb::BBoxd bounds = MeshSource("", mesh).bounds();
@@ -101,14 +76,14 @@ TEST(MeshToVoxels, ACubeOnTheLatticeOwnsItsLowerFaces) {
 }
 
 TEST(MeshToVoxels, AgreesWithTheOracleOnLatticePointsAndPlanes) {
-    expectAsOracle(octahedron(Vec3d(1, -2, 3), 6));
+    expectAsOracle(test::octahedron(Vec3d(1, -2, 3), 6));
     expectAsOracle(test::tetrahedron(Vec3d(-4, 0, 2), 9));
     for (const double parts : {1.0, 2.0, 4.0}) {
         SCOPED_TRACE(parts);
-        expectAsOracle(snapped(test::sphere(Vec3d(0, 0, 0), 9, 12, 16), parts));
-        expectAsOracle(snapped(test::sphere(Vec3d(-7.3, 12.1, 3.6), 8.2, 9, 11), parts));
+        expectAsOracle(test::snapped(test::sphere(Vec3d(0, 0, 0), 9, 12, 16), parts));
+        expectAsOracle(test::snapped(test::sphere(Vec3d(-7.3, 12.1, 3.6), 8.2, 9, 11), parts));
         // Many triangles collapse, most edges lie on the lattice.
-        expectAsOracle(snapped(test::sphere(Vec3d(0.5, 0.5, 0.5), 4, 24, 32), parts));
+        expectAsOracle(test::snapped(test::sphere(Vec3d(0.5, 0.5, 0.5), 4, 24, 32), parts));
     }
 }
 
@@ -132,6 +107,76 @@ TEST(MeshToVoxels, AgreesWithTheOracleOnRandomTriangles) {
         }
         SCOPED_TRACE(round);
         expectAsOracle(mesh);
+    }
+}
+
+TEST(MeshToVoxels, IsTheSameAlongEveryAxis) {
+    std::vector<test::NamedMesh> meshes = test::hardMeshes();
+    // Shells that overlap, and one inside out.
+    Mesh shells = test::sphere(Vec3d(-3, 0, 0), 7, 20, 30);
+    test::append(shells, test::cube(Vec3d(0, 0, 0), 9));
+    test::append(shells, test::reversed(test::cube(Vec3d(12), 5)));
+    meshes.push_back({"shells", shells});
+    for (const auto& [name, mesh] : meshes) {
+        SCOPED_TRACE(name);
+        const MeshSource source(name, mesh);
+        const VoxelResult x = meshToVoxels(source, {.voxelSize = 1});
+        for (const ScanAxis axis : {ScanAxis::Y, ScanAxis::Z}) {
+            test::expectSameVoxels(x, meshToVoxels(source, {.voxelSize = 1, .axis = axis}));
+        }
+        const VoxelResult parts = meshToVoxels(source, {.voxelSize = 1, .fraction = true});
+        for (const ScanAxis axis : {ScanAxis::Y, ScanAxis::Z}) {
+            test::expectSameVoxels(
+                parts, meshToVoxels(source, {.voxelSize = 1, .fraction = true, .axis = axis}));
+        }
+    }
+}
+
+TEST(MeshToVoxels, CountsSubSamplesAsTheOracleDoes) {
+    for (const Mesh& mesh :
+         {test::octahedron(Vec3d(1.25, -2.5, 3.75), 6.5), test::cube(Vec3d(-1.25, 0.5, 2), 7.75),
+          test::snapped(test::sphere(Vec3d(0.3, -0.7, 0.1), 6, 9, 11), 8)}) {
+        // On the lattice of sub-samples, number s of which lies at (s - 1/2) / 2.
+        const Mesh fine = test::placed(mesh, Vec3d(2.0), Vec3d(0.5));
+        const MeshSource source("a.obj", mesh);
+        const auto expectShares = [&](const VoxelResult& result, const auto& valueOf) {
+            double sum = 0;
+            for (auto voxel = boxAround(mesh).begin(); voxel; ++voxel) {
+                int inside = 0;
+                for (int i = 0; i < 8; ++i) {
+                    const Coord sample = (*voxel << 1) + Coord(i & 1, i >> 1 & 1, i >> 2);
+                    inside += test::exactWinding(fine, sample) > 0 ? 1 : 0;
+                }
+                const float expected = valueOf(inside);
+                ASSERT_EQ(result.grid->tree().getValue(*voxel), expected) << *voxel;
+                ASSERT_EQ(result.grid->tree().isValueOn(*voxel), expected > 0) << *voxel;
+                sum += expected;
+            }
+            EXPECT_DOUBLE_EQ(result.volume, sum);
+            EXPECT_EQ(result.voxels, static_cast<std::int64_t>(result.grid->activeVoxelCount()));
+        };
+        expectShares(meshToVoxels(source, {.voxelSize = 1, .fraction = true}),
+                     [](int inside) { return static_cast<float>(inside) / 8; });
+        for (const int threshold : {1, 3, 8}) {
+            expectShares(meshToVoxels(source, {.voxelSize = 1, .threshold = threshold}),
+                         [&](int inside) { return inside >= threshold ? 1.0F : 0.0F; });
+        }
+    }
+}
+
+TEST(MeshToVoxels, SubSamplesAreNearerToTheVolume) {
+    const MeshSource source("a.obj", test::turned(test::torus(1, 0.4, 200, 100)));
+    const auto errorOf = [&](const VoxelOptions& options) {
+        return std::abs(meshToVoxels(source, options).volume - source.volume()) / source.volume();
+    };
+    EXPECT_LT(errorOf({.resolution = 40, .fraction = true}), 2e-3);
+    EXPECT_LT(errorOf({.resolution = 40, .threshold = 5}), 0.05);
+    double last = HUGE_VAL;
+    for (int threshold = 1; threshold <= 8; ++threshold) {
+        const double volume =
+            meshToVoxels(source, {.resolution = 40, .threshold = threshold}).volume;
+        EXPECT_LE(volume, last);
+        last = volume;
     }
 }
 
@@ -284,7 +329,8 @@ TEST(MeshToVoxels, RefusesSizesOutOfRange) {
          {VoxelOptions{.resolution = 0}, VoxelOptions{.resolution = (1 << 20) + 1},
           VoxelOptions{.voxelSize = -1}, VoxelOptions{.voxelSize = HUGE_VAL},
           VoxelOptions{.voxelSize = std::nan("")}, VoxelOptions{.voxelSize = 1e-7},
-          VoxelOptions{.voxelSize = 1e-300}}) {
+          VoxelOptions{.voxelSize = 1e-300}, VoxelOptions{.threshold = 9},
+          VoxelOptions{.threshold = -1}, VoxelOptions{.threshold = 2, .fraction = true}}) {
         EXPECT_EQ(kindOfFailure(mesh, options), ErrorKind::Usage) << options.voxelSize;
     }
     EXPECT_EQ(kindOfFailure(test::cube(Vec3d(1e9), 2), {.voxelSize = 0.1}), ErrorKind::Usage);

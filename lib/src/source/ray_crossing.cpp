@@ -20,7 +20,9 @@ int turnsAround(double y, double z, const std::array<Vec3d, 3>& corner) {
         if (!rises) std::swap(lower, upper);
         const double side = (upper->y() - lower->y()) * (z - lower->z()) -
                             (upper->z() - lower->z()) * (y - lower->y());
-        if (side > 0.0) winding += rises ? 1 : -1;
+        // A point on the edge stands for the place (y + ε, z + ε²) next to it.
+        const bool isAbove = side > 0.0 || (side == 0.0 && upper->z() <= lower->z());
+        if (isAbove) winding += rises ? 1 : -1;
     }
     return winding;
 }

@@ -9,9 +9,9 @@ namespace bandvox {
 
 /// How often the ray from p towards +x leaves through the triangle: 1, 0, or -1 for entering.
 ///
-/// Seen along x, edges are taken to hold the point at one end and not the other, and the side
-/// of an edge is computed alike for both triangles that share it; so a ray that meets an edge or
-/// a corner still crosses a closed surface exactly once.
+/// The point stands for the place (y + ε, z + ε²) next to it, in the limit of small ε, and the side
+/// of an edge is computed alike for both triangles that share it; so a ray that meets an edge or a
+/// corner still crosses a closed surface exactly once.
 int rayCrossing(const openvdb::Vec3d& p, const std::array<openvdb::Vec3d, 3>& corner);
 
 /// Where a line along x crosses a triangle, and which way.

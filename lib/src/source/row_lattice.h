@@ -24,8 +24,10 @@ struct RowLattice {
     int rowCount() const { return static_cast<int>(rows.size()); }
 
     static RowLattice ofRank1(double voxelSize, int perSide);
-    /// One row to a voxel, through the places with whole coordinates.
-    static RowLattice atCorners(double voxelSize) { return {voxelSize, 1, {{0, 0}}}; }
+    /// One row to a voxel, at the same place along y and z in each.
+    static RowLattice oneToAVoxel(double voxelSize, double place) {
+        return {voxelSize, 1, {{place, place}}};
+    }
 };
 
 }  // namespace bandvox

@@ -65,6 +65,14 @@ Coord WindingRows::firstVoxel(std::int64_t bundle) const {
     return mFirstVoxel + Coord(0, y * kSide, z * kSide);
 }
 
+std::span<const float> WindingRows::rowOfVoxel(int y, int z) const {
+    const int fromY = y - mFirstVoxel.y(), fromZ = z - mFirstVoxel.z();
+    if (fromY < 0 || fromZ < 0) return {};
+    const int bundleY = fromY / kSide, bundleZ = fromZ / kSide;
+    if (bundleY >= mMap.count.y() || bundleZ >= mMap.count.z()) return {};
+    return row(std::int64_t(bundleY) * mMap.count.z() + bundleZ, fromY % kSide, fromZ % kSide, 0);
+}
+
 void WindingRows::subtract(const Mesh& solid, Progress& progress) {
     const RowIntervals inside(solid);
     const ProgressStage stage(progress, "subtract solid", std::ssize(mBundles));

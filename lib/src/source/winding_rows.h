@@ -41,6 +41,8 @@ class WindingRows {
         const std::size_t row = (static_cast<std::size_t>(y) * kSide + z) * mLattice.rowCount() + i;
         return {b.crossings.data() + b.start[row], b.crossings.data() + b.start[row + 1]};
     }
+    /// The crossings of the only row of a voxel, which may lie outside of all bundles.
+    std::span<const float> rowOfVoxel(int y, int z) const;
     bool isEmpty(std::int64_t bundle) const { return mBundles[bundle].crossings.empty(); }
     /// To be added to the crossings' x, voxels; a whole number.
     double xOrigin() const { return mXOrigin; }

@@ -9,11 +9,8 @@ namespace bandvox {
 
 namespace {
 
-// A lattice is at most 2^20 voxels wide, so differences of points take 41 bits, and the products
-// of three that a crossing is found by stay below 2^127.
-constexpr int kFractionBits = 20;
-constexpr std::int64_t kVoxel = std::int64_t(1) << kFractionBits;
-
+// A lattice is at most 2^21 samples wide, so differences of points take 39 bits, and the products
+// of three that a crossing is found by stay below 2^121.
 __extension__ using Wide = __int128;
 
 // The least whole number not below n / d.
@@ -26,48 +23,36 @@ std::int64_t ceilOfRatio(Wide n, Wide d) {
     return static_cast<std::int64_t>(quotient * d < n ? quotient + 1 : quotient);
 }
 
-// The least lattice index not below a coordinate.
-int ceilVoxel(std::int64_t coordinate) {
-    return static_cast<int>((coordinate + kVoxel - 1) >> kFractionBits);
-}
-
 }  // namespace
 
 // Where the plane of a triangle crosses rows: x = (d - ny y - nz z) / nx, fixed point.
 struct LatticeMesh::Plane {
     Wide nx, ny, nz, d;
+    bool behindItself;
 
-    Plane(const Point& a, const Point& b, const Point& c) {
+    Plane(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c, ScanAxis axis) {
         const Wide ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
         const Wide vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
         nx = uy * vz - uz * vy;
         ny = uz * vx - ux * vz;
         nz = ux * vy - uy * vx;
         d = nx * a[0] + ny * a[1] + nz * a[2];
+        behindItself = isBehindItself<Wide>({nx, ny, nz}, axis);
     }
 
-    // The first voxel of a row that is not before the plane.
+    // The first voxel of a row whose sample is behind the plane.
     int voxelBehind(int y, int z) const {
-        return static_cast<int>(
-            ceilOfRatio(d - ny * (y * kVoxel) - nz * (z * kVoxel), nx * kVoxel));
+        const Wide n = d - ny * (y * kVoxel) - nz * (z * kVoxel);
+        const std::int64_t first = ceilOfRatio(n, nx * kVoxel);
+        const bool isOnPlane = !behindItself && nx * kVoxel * first == n;
+        return static_cast<int>(isOnPlane ? first + 1 : first);
     }
 };
 
 LatticeMesh::LatticeMesh(const Mesh& mesh, const VoxelLattice& lattice)
-    : mMesh(mesh), mLattice(lattice) {
-    requireMemory(static_cast<double>(sizeof(Point) * mesh.points.size() +
-                                      sizeof(mStart[0]) * lattice.columnCount()),
+    : mMesh(mesh), mLattice(lattice), mPoints(roundToLattice(mesh, lattice)) {
+    requireMemory(static_cast<double>(sizeof(mStart[0]) * lattice.columnCount()),
                   "the mesh on the lattice");
-    // Move to the lattice. A point is rounded once, so the triangles around it stay together.
-    const openvdb::Vec3d first = lattice.voxels.min().asVec3d();
-    mPoints.resize(mesh.points.size());
-    for (std::size_t i = 0; i < mPoints.size(); ++i) {
-        const openvdb::Vec3d voxels = mesh.points[i] / lattice.voxelSize - first;
-        for (int axis = 0; axis < 3; ++axis) {
-            mPoints[i][axis] = std::llround(voxels[axis] * double(kVoxel));
-        }
-    }
-
     // Sort the triangles by column: count, then place.
     const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
     mStart.assign(lattice.columnCount() + 1, 0);
@@ -89,21 +74,20 @@ LatticeMesh::LatticeMesh(const Mesh& mesh, const VoxelLattice& lattice)
 // between the rows; long slanted ones meet few of the columns in their box.
 void LatticeMesh::forEachColumn(std::uint32_t triangle,
                                 const std::function<void(std::int64_t)>& visit) const {
-    const Point a = point(triangle, 0), b = point(triangle, 1), c = point(triangle, 2);
+    const LatticePoint a = point(triangle, 0), b = point(triangle, 1), c = point(triangle, 2);
     const auto range = [&](int axis) {
         return Interval{ceilVoxel(std::min({a[axis], b[axis], c[axis]})),
                         ceilVoxel(std::max({a[axis], b[axis], c[axis]}))};
     };
     const Interval rows = range(1), planes = range(2);
     if (rows.begin >= rows.end) return;
-    const openvdb::Coord start = mLattice.voxels.min() - (mLattice.firstBlock << kBlockLog2);
     for (int z = planes.begin; z < planes.end;) {
-        const int block = (z + start.z()) >> kBlockLog2;
-        const int end = std::min(planes.end, ((block + 1) << kBlockLog2) - start.z());
+        const int block = z >> kBlockLog2;
+        const int end = std::min(planes.end, (block + 1) << kBlockLog2);
         Interval y = rows;
         if (rows.end - rows.begin > kBlockSide) y = reachBetween(triangle, z, end - 1);
-        const int first = (std::max(y.begin, rows.begin) + start.y()) >> kBlockLog2;
-        const int last = (std::min(y.end, rows.end) - 1 + start.y()) >> kBlockLog2;
+        const int first = std::max(y.begin, rows.begin) >> kBlockLog2;
+        const int last = (std::min(y.end, rows.end) - 1) >> kBlockLog2;
         for (int column = first; column <= last; ++column) {
             visit(static_cast<std::int64_t>(column) * mLattice.blockCount.z() + block);
         }
@@ -118,7 +102,7 @@ LatticeMesh::Interval LatticeMesh::reachBetween(std::uint32_t triangle, int zFir
     const double low = double(zFirst) * kVoxel, high = double(zLast) * kVoxel;
     double least = HUGE_VAL, most = -HUGE_VAL;
     for (int corner = 0; corner < 3; ++corner) {
-        Point p = point(triangle, corner), q = point(triangle, (corner + 1) % 3);
+        LatticePoint p = point(triangle, corner), q = point(triangle, (corner + 1) % 3);
         if (p[2] > q[2]) std::swap(p, q);
         const double pz = double(p[2]), qz = double(q[2]);
         if (qz < low || pz > high) continue;
@@ -140,7 +124,7 @@ LatticeMesh::Interval LatticeMesh::rowsOf(std::uint32_t triangle, int z) const {
     std::array<int, 2> cuts{};
     std::size_t found = 0;
     for (int corner = 0; corner < 3; ++corner) {
-        Point p = point(triangle, corner), q = point(triangle, (corner + 1) % 3);
+        LatticePoint p = point(triangle, corner), q = point(triangle, (corner + 1) % 3);
         if (p[2] > q[2]) std::swap(p, q);
         if (p[2] > plane || q[2] <= plane) continue;
         const Wide height = q[2] - p[2];
@@ -153,17 +137,19 @@ LatticeMesh::Interval LatticeMesh::rowsOf(std::uint32_t triangle, int z) const {
 
 void LatticeMesh::cross(const openvdb::Coord& block, std::vector<RowCrossing>& crossings) const {
     // The column's rows, and its triangles.
-    const openvdb::Coord first = mLattice.voxels.min();
-    const openvdb::Coord corner = (block << kBlockLog2) - first;
     const openvdb::Coord place = block - mLattice.firstBlock;
+    const openvdb::Coord corner = place << kBlockLog2;
+    const int first = mLattice.corner().x();
     const std::size_t column =
         static_cast<std::size_t>(place.y()) * mLattice.blockCount.z() + place.z();
     const std::span<const std::uint32_t> triangles(mTriangles.data() + mStart[column],
                                                    mTriangles.data() + mStart[column + 1]);
+    // The normal points outward. The order of a scan along y is a mirrored one.
+    const int inwards = mLattice.axis == ScanAxis::Y ? -1 : 1;
     for (const std::uint32_t t : triangles) {
-        const Plane plane(point(t, 0), point(t, 1), point(t, 2));
+        const Plane plane(point(t, 0), point(t, 1), point(t, 2), mLattice.axis);
         if (plane.nx == 0) continue;
-        const std::int16_t change = plane.nx < 0 ? 1 : -1;  // the normal points outward
+        const auto change = static_cast<std::int16_t>(plane.nx < 0 ? inwards : -inwards);
         for (int z = corner.z(); z < corner.z() + kBlockSide; ++z) {
             const Interval rows = rowsOf(t, z);
             const int begin = std::max(rows.begin, corner.y());
@@ -171,7 +157,7 @@ void LatticeMesh::cross(const openvdb::Coord& block, std::vector<RowCrossing>& c
             for (int y = begin; y < end; ++y) {
                 const int row = kBlockSide * (y - corner.y()) + (z - corner.z());
                 crossings.push_back(
-                    {first.x() + plane.voxelBehind(y, z), static_cast<std::int16_t>(row), change});
+                    {first + plane.voxelBehind(y, z), static_cast<std::int16_t>(row), change});
             }
         }
     }

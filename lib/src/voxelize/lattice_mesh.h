@@ -1,6 +1,7 @@
 #pragma once
 
-#include "voxelize/voxel_column.h"
+#include "voxelize/bit_column.h"
+#include "voxelize/lattice_points.h"
 #include "voxelize/voxel_lattice.h"
 
 #include <bandvox/source/mesh.h>
@@ -20,7 +21,7 @@ namespace bandvox {
 /// small ε. It never meets an edge, so it crosses a closed mesh as often inwards as outwards.
 class LatticeMesh {
   public:
-    /// Points are rounded to 2^-20 voxels. Keeps references to both. Throws
+    /// Points are rounded to 2^-17 voxels. Keeps references to both. Throws
     /// Error(ErrorKind::Memory) before allocating if it would not fit.
     LatticeMesh(const Mesh& mesh, const VoxelLattice& lattice);
 
@@ -28,13 +29,12 @@ class LatticeMesh {
     void cross(const openvdb::Coord& block, std::vector<RowCrossing>& crossings) const;
 
   private:
-    using Point = std::array<std::int64_t, 3>;  // from the lattice's first voxel, fixed point
     struct Plane;
     struct Interval {
         int begin, end;
     };
 
-    Point point(std::uint32_t triangle, int corner) const {
+    const LatticePoint& point(std::uint32_t triangle, int corner) const {
         return mPoints[mMesh.triangles[triangle][corner]];
     }
     void forEachColumn(std::uint32_t triangle,
@@ -44,7 +44,7 @@ class LatticeMesh {
 
     const Mesh& mMesh;
     const VoxelLattice& mLattice;
-    std::vector<Point> mPoints;
+    std::vector<LatticePoint> mPoints;
     std::vector<std::uint64_t> mStart;  // of each column in mTriangles, and the end
     std::vector<std::uint32_t> mTriangles;
 };

@@ -3,11 +3,9 @@
 #include "voxelize/voxel_column.h"
 #include "voxelize/voxel_lattice.h"
 
-#include <bandvox/core/error.h>
 #include <bandvox/core/parallel.h>
 #include <bandvox/voxelize/mesh_to_voxels.h>
 
-#include <algorithm>
 #include <vector>
 
 namespace bandvox {
@@ -15,16 +13,19 @@ namespace bandvox {
 namespace {
 
 std::vector<ColumnVoxels> scanColumns(const MeshSource& source, const VoxelLattice& lattice,
-                                      Progress& progress) {
-    const LatticeMesh mesh(source.mesh(), lattice);
+                                      const VoxelOptions& options, Progress& progress) {
+    const VoxelLattice samples = sampleLattice(lattice, options);
+    const LatticeMesh mesh(source.mesh(), samples);
+    const auto scan = [&](const openvdb::Coord& block) {
+        std::vector<RowCrossing> crossings;
+        mesh.cross(block, crossings);
+        return fillColumn(crossings);
+    };
     std::vector<ColumnVoxels> columns(lattice.columnCount());
     const ProgressStage stage(progress, "voxelizing", lattice.columnCount());
     parallelFor(lattice.columnCount(), [&](std::int64_t i) {
         progress.throwIfInterrupted();
-        const openvdb::Coord block = lattice.columnBlock(i);
-        std::vector<RowCrossing> crossings;
-        mesh.cross(block, crossings);
-        columns[i] = fillColumn(block, crossings);
+        columns[i] = makeColumn(lattice, options, lattice.columnBlock(i), scan);
         progress.advance();
     });
     return columns;
@@ -36,23 +37,9 @@ VoxelResult meshToVoxels(const MeshSource& source, const VoxelOptions& options,
                          Progress& progress) {
     const VoxelLattice lattice = layOutVoxels(source.name(), source.bounds(), options);
     requireVoxelMemory(lattice, source.area());
-
-    std::vector<ColumnVoxels> columns = scanColumns(source, lattice, progress);
-    if (!std::all_of(columns.begin(), columns.end(), [](const auto& c) { return c.isClosed; })) {
-        throw Error(ErrorKind::Input, source.name() +
-                                          ": the mesh is not closed: a line enters it "
-                                          "more or less often than it leaves it");
-    }
-    const bool isInsideOut = std::any_of(columns.begin(), columns.end(),
-                                         [](const auto& column) { return column.isInsideOut; });
-
+    std::vector<ColumnVoxels> columns = scanColumns(source, lattice, options, progress);
     const ProgressStage stage(progress, "assembling", 0);
-    VoxelResult result = assembleVoxels(source.name(), lattice, columns);
-    if (isInsideOut) {
-        result.warnings.emplace_back(
-            "parts of the surface are inside out; what they enclose counts as outside");
-    }
-    return result;
+    return assembleMeshVoxels(source.name(), lattice, options, columns);
 }
 
 }  // namespace bandvox

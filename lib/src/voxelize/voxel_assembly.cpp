@@ -5,6 +5,7 @@
 #include <bandvox/grid/density_grid.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -43,7 +44,7 @@ std::vector<ColumnGroup> groupColumns(const VoxelLattice& lattice) {
 // Makes active tiles of what is solid in a group, as large as can be.
 class SolidTiles {
   public:
-    explicit SolidTiles(Tree& tree) : mTree(tree) {}
+    SolidTiles(Tree& tree, const VoxelLattice& lattice) : mTree(tree), mLattice(lattice) {}
 
     // Looks at a run before any is added.
     void count(const SolidRun& run) {
@@ -57,19 +58,24 @@ class SolidTiles {
         for (block.x() = run.begin; block.x() < run.end; ++block.x()) {
             const auto columns = mColumns.find(block.x() >> kCellLog2);
             if (columns == mColumns.end() || columns->second < kCellSide * kCellSide) {
-                mTree.addTile(1, block << kBlockLog2, 1.0F, true);
+                addTile(1, block);
                 continue;
             }
             // The cell's first column speaks for all of them.
             if (((block.y() | block.z()) & (kCellSide - 1)) == 0) {
-                mTree.addTile(2, block << kBlockLog2, 1.0F, true);
+                addTile(2, block);
             }
             block.x() |= kCellSide - 1;
         }
     }
 
   private:
+    void addTile(unsigned level, const Coord& block) {
+        mTree.addTile(level, mLattice.inGrid(block) << kBlockLog2, 1.0F, true);
+    }
+
     Tree& mTree;
+    const VoxelLattice& mLattice;
     std::map<int, int> mColumns;  // that are solid all through a cell, by its place along x
 };
 
@@ -84,7 +90,7 @@ void addGroup(const ColumnGroup& group, const VoxelLattice& lattice,
             }
         }
     };
-    SolidTiles tiles(tree);
+    SolidTiles tiles(tree, lattice);
     forEachColumn([&](const Coord&, const ColumnVoxels& column) {
         for (const SolidRun& run : column.solid) tiles.count(run);
     });
@@ -98,15 +104,21 @@ void addGroup(const ColumnGroup& group, const VoxelLattice& lattice,
 }  // namespace
 
 VoxelResult assembleVoxels(const std::string& source, const VoxelLattice& lattice,
-                           std::vector<ColumnVoxels>& columns) {
+                           const VoxelOptions& options, std::vector<ColumnVoxels>& columns) {
     VoxelResult result;
-    for (const ColumnVoxels& column : columns) result.voxels += column.voxels;
+    std::int64_t eighths = 0;
+    for (const ColumnVoxels& column : columns) {
+        result.voxels += column.voxels;
+        eighths += column.eighths;
+    }
     if (result.voxels == 0) {
         std::ostringstream message;
-        message << source << ": no voxel's centre is inside; expected voxels smaller than "
-                << lattice.voxelSize << " world units";
+        message << source << ": no voxel" << (options.subSamples() ? "" : "'s centre")
+                << " is inside; expected voxels smaller than " << lattice.voxelSize
+                << " world units";
         throw Error(ErrorKind::Result, message.str());
     }
+    result.volume = static_cast<double>(eighths) / kSubSamples * std::pow(lattice.voxelSize, 3);
     result.grid = openvdb::FloatGrid::create(0.0F);
     for (const ColumnGroup& group : groupColumns(lattice)) {
         addGroup(group, lattice, columns, result.grid->tree());
@@ -116,6 +128,23 @@ VoxelResult assembleVoxels(const std::string& source, const VoxelLattice& lattic
     result.grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     result.grid->setCreator(std::string("bandvox ") + version());
     setVoxelMetadata(*result.grid, source);
+    return result;
+}
+
+VoxelResult assembleMeshVoxels(const std::string& source, const VoxelLattice& lattice,
+                               const VoxelOptions& options, std::vector<ColumnVoxels>& columns) {
+    if (!std::all_of(columns.begin(), columns.end(), [](const auto& c) { return c.isClosed; })) {
+        throw Error(ErrorKind::Input, source +
+                                          ": the mesh is not closed: a line enters it "
+                                          "more or less often than it leaves it");
+    }
+    const bool isInsideOut = std::any_of(columns.begin(), columns.end(),
+                                         [](const auto& column) { return column.isInsideOut; });
+    VoxelResult result = assembleVoxels(source, lattice, options, columns);
+    if (isInsideOut) {
+        result.warnings.emplace_back(
+            "parts of the surface are inside out; what they enclose counts as outside");
+    }
     return result;
 }
 

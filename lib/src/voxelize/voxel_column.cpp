@@ -3,52 +3,41 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <tuple>
 
 namespace bandvox {
 
 namespace {
 
-// Rows of a column as bits. A leaf node's mask has one such word for each x.
-using Rows = std::uint64_t;
-constexpr Rows kAllRows = ~Rows(0);
+// Swaps rows and columns of a matrix of 8 × 8 bits, a row a byte: first single bits, then squares
+// of 2 × 2 and 4 × 4.
+Rows transposed(Rows m) {
+    const auto swap = [&m](int distance, Rows mask) {
+        const Rows t = (m ^ (m >> distance)) & mask;
+        m ^= t ^ (t << distance);
+    };
+    swap(7, 0x00aa00aa00aa00aa);
+    swap(14, 0x0000cccc0000cccc);
+    swap(28, 0x00000000f0f0f0f0);
+    return m;
+}
 
-// The winding numbers of a column's rows on the way along x.
-class RowWindings {
-  public:
-    // The rows that are inside.
-    Rows inside() const { return mInside; }
-    bool isInsideOut() const { return mNegative != 0; }
-    bool areZero() const {
-        return std::all_of(mWinding.begin(), mWinding.end(), [](int w) { return w == 0; });
-    }
-
-    void add(const RowCrossing& crossing) {
-        const int winding = mWinding[crossing.row] += crossing.change;
-        const Rows row = Rows(1) << crossing.row;
-        mInside = winding > 0 ? mInside | row : mInside & ~row;
-        mNegative = winding < 0 ? mNegative | row : mNegative & ~row;
-    }
-
-  private:
-    std::array<int, kBlockSide * kBlockSide> mWinding{};
-    Rows mInside = 0, mNegative = 0;
-};
-
-using BlockRows = std::array<Rows, kBlockSide>;
-
-void addBlock(const openvdb::Coord& block, const BlockRows& rows, ColumnVoxels& column) {
-    int voxels = 0;
-    for (const Rows word : rows) voxels += std::popcount(word);
-    if (voxels == 0) return;
-    column.voxels += voxels;
-    if (voxels == VoxelLeaf::SIZE) {
-        if (column.solid.empty() || column.solid.back().end != block.x()) {
-            column.solid.push_back({block.x(), block.x()});
+// Turns rows of a scan to those of the grid, whose words are places along x.
+BlockRows rowsInGrid(const BlockRows& rows, ScanAxis axis) {
+    if (axis == ScanAxis::X) return rows;
+    // What the words count goes to the bytes, what the bytes count to the words.
+    BlockRows result{};
+    for (int word = 0; word < kBlockSide; ++word) {
+        for (int byte = 0; byte < kBlockSide; ++byte) {
+            result[byte] |= (rows[word] >> (8 * byte) & 255) << (8 * word);
         }
-        ++column.solid.back().end;
-        return;
     }
+    // Along z, the bytes are now z and the bits y.
+    if (axis == ScanAxis::Z)
+        std::transform(result.begin(), result.end(), result.begin(), transposed);
+    return result;
+}
+
+std::unique_ptr<VoxelLeaf> binaryLeaf(const openvdb::Coord& block, const BlockRows& rows) {
     auto leaf = std::make_unique<VoxelLeaf>(block << kBlockLog2, 0.0F, false);
     float* values = leaf->buffer().data();
     VoxelLeaf::NodeMaskType active;
@@ -59,49 +48,102 @@ void addBlock(const openvdb::Coord& block, const BlockRows& rows, ColumnVoxels& 
         }
     }
     leaf->setValueMask(active);
-    column.leaves.push_back(std::move(leaf));
+    return leaf;
 }
 
-// Adds blocks [begin, end), which no row crosses anything in.
-void addUncrossed(openvdb::Coord block, int begin, int end, Rows inside, ColumnVoxels& column) {
-    if (inside == 0 || begin >= end) return;
-    if (inside == kAllRows) {
-        column.voxels += std::int64_t(end - begin) * VoxelLeaf::SIZE;
-        if (column.solid.empty() || column.solid.back().end != begin) {
-            column.solid.push_back({begin, begin});
-        }
-        column.solid.back().end = end;
-        return;
+// Makes voxels that are 0 or 1 of bits.
+ColumnVoxels binaryColumn(const VoxelLattice& lattice, openvdb::Coord block,
+                          const BitColumn& bits) {
+    ColumnVoxels column;
+    for (const BitBlock& part : bits.blocks) {
+        for (const Rows word : part.rows) column.voxels += std::popcount(word);
+        block.x() = part.x;
+        column.leaves.push_back(
+            binaryLeaf(lattice.inGrid(block), rowsInGrid(part.rows, lattice.axis)));
     }
-    BlockRows rows;
-    rows.fill(inside);
-    for (block.x() = begin; block.x() < end; ++block.x()) addBlock(block, rows, column);
+    for (const SolidRun& run : bits.solid) {
+        column.voxels += std::int64_t(run.end - run.begin) * VoxelLeaf::SIZE;
+    }
+    column.eighths = kSubSamples * column.voxels;
+    column.solid = bits.solid;
+    return column;
+}
+
+BitColumn aboveThreshold(const SubSampleColumns& samples, int threshold) {
+    BitColumn bits;
+    countSubSamples(
+        samples, [&](const SolidRun& run) { bits.addUncrossed(run.begin, run.end, kAllRows); },
+        [&](int x, const BlockCounts& counts) {
+            BlockRows rows{};
+            for (std::size_t i = 0; i < counts.size(); ++i) {
+                rows[i >> 6] |= Rows(counts[i] >= threshold) << (i & 63);
+            }
+            bits.add(x, rows);
+        });
+    return bits;
+}
+
+// Makes voxels whose values are the share of their sub-samples inside.
+ColumnVoxels fractionColumn(const VoxelLattice& lattice, openvdb::Coord block,
+                            const SubSampleColumns& samples) {
+    const std::array<int, 3> order = scanOrder(lattice.axis);
+    std::array<int, 3> stride{};  // in a leaf node, along the axes of the scan
+    for (int i = 0; i < 3; ++i) stride[i] = 1 << (kBlockLog2 * (2 - order[i]));
+    ColumnVoxels column;
+    const auto addSolid = [&](const SolidRun& run) {
+        if (column.solid.empty() || column.solid.back().end != run.begin) {
+            column.solid.push_back(run);
+        }
+        column.solid.back().end = run.end;
+        column.voxels += std::int64_t(run.end - run.begin) * VoxelLeaf::SIZE;
+        column.eighths += std::int64_t(run.end - run.begin) * VoxelLeaf::SIZE * kSubSamples;
+    };
+    countSubSamples(samples, addSolid, [&](int x, const BlockCounts& counts) {
+        if (std::all_of(counts.begin(), counts.end(), [](int n) { return n == kSubSamples; })) {
+            return addSolid({x, x + 1});
+        }
+        block.x() = x;
+        auto leaf = std::make_unique<VoxelLeaf>(lattice.inGrid(block) << kBlockLog2, 0.0F, false);
+        float* values = leaf->buffer().data();
+        for (int i = 0; i < static_cast<int>(counts.size()); ++i) {
+            if (counts[i] == 0) continue;
+            const int place = (i >> 6) * stride[0] + (i >> 3 & 7) * stride[1] + (i & 7) * stride[2];
+            values[place] = static_cast<float>(counts[i]) / kSubSamples;
+            leaf->setValueOn(place);
+            ++column.voxels;
+            column.eighths += counts[i];
+        }
+        column.leaves.push_back(std::move(leaf));
+    });
+    return column;
 }
 
 }  // namespace
 
-ColumnVoxels fillColumn(const openvdb::Coord& place, std::vector<RowCrossing>& crossings) {
-    std::sort(crossings.begin(), crossings.end(), [](const auto& a, const auto& b) {
-        return std::tie(a.voxel, a.row, a.change) < std::tie(b.voxel, b.row, b.change);
-    });
-    ColumnVoxels column;
-    RowWindings windings;
-    openvdb::Coord block = place;
-    auto next = crossings.begin();
-    for (int done = 0; next != crossings.end(); done = block.x() + 1) {
-        // Pass on to the next block that is crossed, then through it.
-        block.x() = next->voxel >> kBlockLog2;
-        addUncrossed(block, done, block.x(), windings.inside(), column);
-        BlockRows rows;
-        for (int x = 0; x < kBlockSide; ++x) {
-            const int voxel = (block.x() << kBlockLog2) + x;
-            for (; next != crossings.end() && next->voxel == voxel; ++next) windings.add(*next);
-            rows[x] = windings.inside();
-            column.isInsideOut = column.isInsideOut || windings.isInsideOut();
-        }
-        addBlock(block, rows, column);
+VoxelLattice sampleLattice(const VoxelLattice& lattice, const VoxelOptions& options) {
+    return options.subSamples() ? subSampleLattice(lattice) : lattice;
+}
+
+ColumnVoxels makeColumn(const VoxelLattice& lattice, const VoxelOptions& options,
+                        const openvdb::Coord& block, const SampledColumns& samples) {
+    if (!options.subSamples()) {
+        const BitColumn bits = samples(block);
+        ColumnVoxels column = binaryColumn(lattice, block, bits);
+        column.isClosed = bits.isClosed;
+        column.isInsideOut = bits.isInsideOut;
+        return column;
     }
-    column.isClosed = windings.areZero();
+    SubSampleColumns parts;
+    for (int i = 0; i < 4; ++i) {
+        parts[i] = samples((block << 1) + openvdb::Coord(0, i >> 1, i & 1));
+    }
+    ColumnVoxels column =
+        options.fraction ? fractionColumn(lattice, block, parts)
+                         : binaryColumn(lattice, block, aboveThreshold(parts, options.threshold));
+    for (const BitColumn& part : parts) {
+        column.isClosed = column.isClosed && part.isClosed;
+        column.isInsideOut = column.isInsideOut || part.isInsideOut;
+    }
     return column;
 }
 

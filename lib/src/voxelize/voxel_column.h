@@ -1,8 +1,13 @@
 #pragma once
 
+#include "voxelize/bit_column.h"
+#include "voxelize/sub_samples.h"
+#include "voxelize/voxel_lattice.h"
+
 #include <openvdb/openvdb.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -10,33 +15,24 @@ namespace bandvox {
 
 using VoxelLeaf = openvdb::FloatTree::LeafNodeType;
 
-constexpr int kBlockLog2 = VoxelLeaf::LOG2DIM;
-constexpr int kBlockSide = VoxelLeaf::DIM;
-
-/// Where a row of voxels along x enters or leaves a shell of the solid.
-struct RowCrossing {
-    std::int32_t voxel;   ///< the first one behind it: an index along x
-    std::int16_t row;     ///< in its column: 8·(y mod 8) + (z mod 8)
-    std::int16_t change;  ///< of the winding number
-};
-
-/// Leaf nodes of a column that are inside as a whole.
-struct SolidRun {
-    std::int32_t begin, end;  ///< index along x / 8; the end excluded
-};
-
-/// The voxels inside of one column.
+/// The voxels of one column.
 struct ColumnVoxels {
     std::vector<std::unique_ptr<VoxelLeaf>> leaves;  ///< those in part inside, x rising
     std::vector<SolidRun> solid;                     ///< x rising
-    std::int64_t voxels = 0;                         ///< inside
+    std::int64_t voxels = 0;                         ///< active
+    std::int64_t eighths = 0;                        ///< sum of the values, times 8
     bool isClosed = true;                            ///< each row's winding number returns to 0
     bool isInsideOut = false;                        ///< a winding number is negative somewhere
 };
 
-/// Fills a column from its crossings, in any order, which get sorted. A voxel is inside if the
-/// changes up to it add up to more than 0. `block`: a leaf node of the column, voxel / 8; its x
-/// does not matter.
-ColumnVoxels fillColumn(const openvdb::Coord& block, std::vector<RowCrossing>& crossings);
+/// Gives the bits of a column of samples, by its place: a block of the lattice of the samples.
+using SampledColumns = std::function<BitColumn(const openvdb::Coord& block)>;
+
+/// The lattice of what is sampled: the voxels' centres, or the sub-samples.
+VoxelLattice sampleLattice(const VoxelLattice& lattice, const VoxelOptions& options);
+
+/// Makes the voxels of the column at `block` from its samples: one column of them, or four.
+ColumnVoxels makeColumn(const VoxelLattice& lattice, const VoxelOptions& options,
+                        const openvdb::Coord& block, const SampledColumns& samples);
 
 }  // namespace bandvox

@@ -1,11 +1,13 @@
 #include "voxelize/voxel_lattice.h"
 
+#include "voxelize/bit_column.h"
 #include "voxelize/voxel_column.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -14,7 +16,7 @@ namespace bandvox {
 namespace {
 
 // OpenVDB's indices go to 2^31; room is left for what is added to them.
-constexpr double kLargestIndex = 1 << 30;
+constexpr int kLargestIndexLog2 = 30;
 constexpr int kMostVoxels = 1 << 20;  // along a side
 
 template <typename... Parts>
@@ -33,9 +35,32 @@ void requireValid(const VoxelOptions& options) {
         fail(ErrorKind::Usage, "the voxel size is ", options.voxelSize,
              "; it must be positive, in world units");
     }
+    if (options.threshold < 0 || options.threshold > kSubSamples) {
+        fail(ErrorKind::Usage, "the threshold is ", options.threshold,
+             "; it must be between 1 and 8 sub-samples, or 0 for the voxel's centre");
+    }
+    if (options.fraction && options.threshold != 0) {
+        fail(ErrorKind::Usage, "both a threshold and the fraction of sub-samples are asked for; ",
+             "expected one of them");
+    }
 }
 
 }  // namespace
+
+openvdb::Coord VoxelLattice::corner() const {
+    return firstBlock << kBlockLog2;
+}
+
+openvdb::Coord VoxelLattice::inGrid(const openvdb::Coord& place) const {
+    const std::array<int, 3> order = scanOrder(axis);
+    openvdb::Coord result;
+    for (int i = 0; i < 3; ++i) result[order[i]] = place[i];
+    return result;
+}
+
+openvdb::Vec3d VoxelLattice::sample(const openvdb::Coord& voxel) const {
+    return voxelSize * (inGrid(voxel).asVec3d() + openvdb::Vec3d(offset));
+}
 
 VoxelLattice layOutVoxels(const std::string& name, const openvdb::BBoxd& bounds,
                           const VoxelOptions& options) {
@@ -50,25 +75,42 @@ VoxelLattice layOutVoxels(const std::string& name, const openvdb::BBoxd& bounds,
     const openvdb::Vec3d high = bounds.max() / voxelSize;
     VoxelLattice lattice;
     lattice.voxelSize = voxelSize;
-    for (int axis = 0; axis < 3; ++axis) {
+    lattice.axis = options.axis;
+    const std::array<int, 3> order = scanOrder(options.axis);
+    // Sub-samples have twice the index.
+    const int largestLog2 = kLargestIndexLog2 - (options.subSamples() ? 1 : 0);
+    const double largest = std::ldexp(1.0, largestLog2);
+    for (int i = 0; i < 3; ++i) {
+        const int axis = order[i];
         // Written so that a NaN fails too.
-        if (!(low[axis] > -kLargestIndex && high[axis] < kLargestIndex)) {
+        if (!(low[axis] > -largest && high[axis] < largest)) {
             fail(ErrorKind::Usage, "with voxels of ", voxelSize,
                  " world units the object reaches index ", std::max(-low[axis], high[axis]),
-                 ", and indices must stay below 2^30");
+                 ", and indices must stay below 2^", largestLog2);
         }
         if (!(high[axis] - low[axis] < kMostVoxels + 0.5)) {
             fail(ErrorKind::Usage, "with voxels of ", voxelSize, " world units the object is ",
                  high[axis] - low[axis], " voxels long; it must be at most ", kMostVoxels);
         }
         // Whole voxels more than the box: what rounds to its faces is still inside.
-        lattice.voxels.min()[axis] = static_cast<int>(std::floor(low[axis]));
-        lattice.voxels.max()[axis] = static_cast<int>(std::ceil(high[axis]));
+        lattice.voxels.min()[i] = static_cast<int>(std::floor(low[axis]));
+        lattice.voxels.max()[i] = static_cast<int>(std::ceil(high[axis]));
     }
     lattice.firstBlock = lattice.voxels.min() >> kBlockLog2;
     lattice.blockCount = (lattice.voxels.max() >> kBlockLog2) - lattice.firstBlock;
     lattice.blockCount.offset(1);
     return lattice;
+}
+
+VoxelLattice subSampleLattice(const VoxelLattice& lattice) {
+    VoxelLattice fine = lattice;
+    fine.voxelSize = lattice.voxelSize / 2;
+    fine.offset = -0.5;
+    fine.voxels.min() = lattice.voxels.min() << 1;
+    fine.voxels.max() = (lattice.voxels.max() << 1).offsetBy(1);
+    fine.firstBlock = lattice.firstBlock << 1;
+    fine.blockCount = lattice.blockCount << 1;
+    return fine;
 }
 
 void requireVoxelMemory(const VoxelLattice& lattice, double area) {

@@ -4,16 +4,27 @@
 
 #include <openvdb/math/BBox.h>
 
+#include <array>
 #include <cstdint>
 #include <string>
 
 namespace bandvox {
 
-/// The voxels that a solid may fill, and the leaf nodes that hold them. A column is what leaf
-/// nodes that differ only in x cover: 8 × 8 rows of voxels.
+/// The axes of the grid in the order of a scan's own: along a row first, then the others, rising.
+constexpr std::array<int, 3> scanOrder(ScanAxis axis) {
+    if (axis == ScanAxis::X) return {0, 1, 2};
+    if (axis == ScanAxis::Y) return {1, 0, 2};
+    return {2, 0, 1};
+}
+
+/// The voxels that a solid may fill, and the leaf nodes that hold them, in the order of a scan: its
+/// x is along the rows, whichever axis of the grid that is. A column is what leaf nodes that
+/// differ only in x cover: 8 × 8 rows of voxels.
 struct VoxelLattice {
     double voxelSize;           ///< world units
-    openvdb::CoordBBox voxels;  ///< all whose centres may be inside
+    double offset = 0;          ///< of a voxel's sample from its index along each axis, voxels
+    ScanAxis axis;              ///< of the grid, that rows lie along
+    openvdb::CoordBBox voxels;  ///< all whose samples may be inside
     openvdb::Coord firstBlock;  ///< of the leaf nodes: voxel / 8
     openvdb::Coord blockCount;  ///< leaf nodes along each axis
 
@@ -26,6 +37,15 @@ struct VoxelLattice {
         return firstBlock + openvdb::Coord(0, static_cast<int>(column / blockCount.z()),
                                            static_cast<int>(column % blockCount.z()));
     }
+
+    /// The first voxel of the first leaf node.
+    openvdb::Coord corner() const;
+
+    /// The place in the grid of a voxel, or of a leaf node.
+    openvdb::Coord inGrid(const openvdb::Coord& place) const;
+
+    /// Where a voxel's sample lies, world units.
+    openvdb::Vec3d sample(const openvdb::Coord& voxel) const;
 };
 
 /// Lays out the lattice for a source, which `name` names in messages. `bounds`: world units.
@@ -33,6 +53,10 @@ struct VoxelLattice {
 /// indices beyond 2^30, Error(ErrorKind::Input) if the box has no size.
 VoxelLattice layOutVoxels(const std::string& name, const openvdb::BBoxd& bounds,
                           const VoxelOptions& options);
+
+/// The lattice of the sub-samples: twice as fine. Those of voxel i are 2i and 2i + 1; its leaf
+/// nodes are all that those of the voxels hold.
+VoxelLattice subSampleLattice(const VoxelLattice& lattice);
 
 /// Throws Error(ErrorKind::Memory) if a grid on the lattice would not fit into memory. `area`: of
 /// the solid's surface, world units².

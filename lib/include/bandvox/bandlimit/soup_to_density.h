@@ -2,18 +2,9 @@
 
 #include <bandvox/bandlimit/density.h>
 #include <bandvox/core/progress.h>
-#include <bandvox/source/mesh.h>
-
-#include <string>
+#include <bandvox/source/soup_source.h>
 
 namespace bandvox {
-
-/// Triangles that no repair makes the boundary of a solid, beside those that are one.
-struct SoupOfTriangles {
-    std::string name;  ///< a file's
-    Mesh soup;         ///< with openings; its points that belong together are one
-    Mesh solid;        ///< closed, as uniteShells leaves it; may be empty
-};
 
 /// How a soup is made a solid and band-limited.
 struct SoupDensityOptions {

@@ -13,6 +13,13 @@ namespace bandvox {
 
 class WindingRows;
 
+/// Triangles that no repair makes the boundary of a solid, beside those that are one.
+struct SoupOfTriangles {
+    std::string name;  ///< a file's
+    Mesh soup;         ///< with openings; its points that belong together are one
+    Mesh solid;        ///< closed, as uniteShells leaves it; may be empty
+};
+
 /// For which lattice a soup of triangles is made a solid.
 struct SoupOptions {
     double voxelSize = 1;         ///< world units
