@@ -1,5 +1,5 @@
-// Measures what docs/experiments/README.md and docs/math/sampled-route.md report, each question as
-// one or two .csv files.
+// Measures what docs/experiments/README.md, docs/math/sampled-route.md and docs/voxelize.md report,
+// each question as one or two .csv files.
 //
 //     bandvox_experiments FOLDER [EXPERIMENT]...   (kExperiments names them)
 
@@ -24,7 +24,8 @@ using namespace bandvox::experiments;
 const std::pair<std::string, void (*)(const Folder&)> kExperiments[] = {
     {"oversampling", measureOversampling}, {"near-objects", measureNearObjects},
     {"lost-detail", measureLostDetail},    {"volume", measureVolume},
-    {"stated-error", measureStatedError},
+    {"stated-error", measureStatedError},  {"voxel-accuracy", measureVoxelAccuracy},
+    {"voxel-times", measureVoxelTimes},
 };
 
 void run(const Folder& folder, const std::vector<std::string>& wanted) {

@@ -26,4 +26,11 @@ void measureVolume(const Folder& folder);
 /// place.
 void measureStatedError(const Folder& folder);
 
+/// How far surface voxels are from the true surface, by the threshold of their sub-samples, and how
+/// far the surface of a band-limited density is.
+void measureVoxelAccuracy(const Folder& folder);
+
+/// The time that voxelization takes, by the methods that there are.
+void measureVoxelTimes(const Folder& folder);
+
 }  // namespace bandvox::experiments
