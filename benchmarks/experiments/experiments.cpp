@@ -25,7 +25,7 @@ const std::pair<std::string, void (*)(const Folder&)> kExperiments[] = {
     {"oversampling", measureOversampling}, {"near-objects", measureNearObjects},
     {"lost-detail", measureLostDetail},    {"volume", measureVolume},
     {"stated-error", measureStatedError},  {"voxel-accuracy", measureVoxelAccuracy},
-    {"voxel-times", measureVoxelTimes},
+    {"voxel-times", measureVoxelTimes},    {"winding", measureWinding},
 };
 
 void run(const Folder& folder, const std::vector<std::string>& wanted) {

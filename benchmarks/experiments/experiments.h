@@ -30,6 +30,9 @@ void measureStatedError(const Folder& folder);
 /// far the surface of a band-limited density is.
 void measureVoxelAccuracy(const Folder& folder);
 
+/// The error and the cost of the winding number, and the errors of densities made by it.
+void measureWinding(const Folder& folder);
+
 /// The time that voxelization takes, by the methods that there are.
 void measureVoxelTimes(const Folder& folder);
 

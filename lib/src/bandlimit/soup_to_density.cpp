@@ -9,7 +9,6 @@
 #include <bandvox/source/mesh_source.h>
 #include <bandvox/source/soup_source.h>
 
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,11 +22,6 @@ openvdb::BBoxd boundsOf(const Mesh& mesh) {
     openvdb::BBoxd box;
     for (const openvdb::Vec3d& p : mesh.points) box.expand(p);
     return box;
-}
-
-std::string unknownError(int rows) {
-    return "the sampling error is not known: " + std::to_string(rows) +
-           " rows to a voxel cannot be halved to compare with; expected an even number";
 }
 
 std::string largeError(double error, double tolerance, int rows) {
@@ -64,16 +58,10 @@ DensityResult soupToDensity(const SoupOfTriangles& triangles, const SoupDensityO
     DensityResult result = convert(soup);
     result.metadata.route = "winding";
     result.metadata.oversampling = options.rowsPerVoxel;
-    if (options.rowsPerVoxel % 2 != 0) {
-        result.metadata.samplingError = std::numeric_limits<double>::quiet_NaN();
-        result.warnings.push_back(unknownError(options.rowsPerVoxel));
-        return result;
-    }
 
     // Measure what the rows cannot tell.
     const DensityResult coarse = convert(*soup.withFewerRows());
-    // Half of the rows along either side are wrong by at least twice as much as all of them, so by
-    // at least as much more.
+    // A lattice twice as wide is wrong by at least twice as much, so by at least as much more.
     const double error = largestDifference(*result.grid, *coarse.grid);
     result.metadata.samplingError = error;
     if (error > options.samplingTolerance) {

@@ -38,7 +38,7 @@ std::shared_ptr<const WindingRows> makeRows(const Mesh& soup, const SoupOptions&
     BBoxd bounds;
     for (const Vec3d& p : soup.points) bounds.expand(p);
     const auto rows = std::make_shared<WindingRows>(
-        WindingTree(soup), bounds, RowLattice::ofRank1(options.voxelSize, options.rowsPerVoxel),
+        WindingTree(soup), bounds, RowLattice::turned(options.voxelSize, options.rowsPerVoxel),
         progress);
     if (options.solid != nullptr && !options.solid->triangles.empty()) {
         rows->subtract(*options.solid, progress);
@@ -75,21 +75,24 @@ SoupSource::SoupSource(std::string name, const Mesh& soup, const SoupOptions& op
                     "triangles that enclose something, counter-clockwise seen from outside");
 }
 
-SoupSource::SoupSource(const SoupSource& all, int stride)
-    : mName(all.mName), mRows(all.mRows), mStride(stride) {
+SoupSource::SoupSource(const SoupSource& all, bool isWider)
+    : mName(all.mName), mRows(all.mRows), mIsWider(isWider) {
     findElements();
 }
 
 SoupSource::~SoupSource() = default;
 
 std::unique_ptr<SoupSource> SoupSource::withFewerRows() const {
-    return std::unique_ptr<SoupSource>(new SoupSource(*this, 4 * mStride));
+    return std::unique_ptr<SoupSource>(new SoupSource(*this, true));
 }
 
 std::int64_t SoupSource::rowCount() const {
     const Coord bundles = mRows->bundleCount();
-    constexpr std::int64_t kVoxels = WindingRows::kSide * WindingRows::kSide;
-    return kVoxels * (mRows->lattice().rowCount() / mStride) * bundles.y() * bundles.z();
+    std::int64_t count = 0;
+    for (std::int64_t b = 0; b < std::int64_t(bundles.y()) * bundles.z(); ++b) {
+        forEachRow(b, [&](int, int, int) { ++count; });
+    }
+    return count;
 }
 
 std::int64_t SoupSource::evaluations() const {
@@ -98,7 +101,7 @@ std::int64_t SoupSource::evaluations() const {
 
 // The area that a row stands for, voxels².
 double SoupSource::areaOfRow() const {
-    return static_cast<double>(mStride) / mRows->lattice().rowCount();
+    return (mIsWider ? 4.0 : 1.0) / mRows->lattice().rowCount();
 }
 
 void SoupSource::findElements() {
@@ -108,7 +111,7 @@ void SoupSource::findElements() {
     std::int64_t crossings = 0;
     for (std::int64_t b = 0; b < std::int64_t(bundles.y()) * bundles.z(); ++b) {
         float low = HUGE_VALF, high = -HUGE_VALF;
-        forEachRow([&](int y, int z, int i) {
+        forEachRow(b, [&](int y, int z, int i) {
             const std::span<const float> row = mRows->row(b, y, z, i);
             if (row.empty()) return;
             low = std::min(low, row.front());
@@ -130,11 +133,19 @@ void SoupSource::findElements() {
     mArea = 2.0 * static_cast<double>(crossings) * areaOfRow() * voxel * voxel;
 }
 
+// Visits the rows of a bundle that are used.
 template <typename Visit>
-void SoupSource::forEachRow(const Visit& visit) const {
+void SoupSource::forEachRow(std::int64_t bundle, const Visit& visit) const {
+    const RowLattice& lattice = mRows->lattice();
+    const Coord first = mRows->firstVoxel(bundle);
     for (int y = 0; y < WindingRows::kSide; ++y) {
         for (int z = 0; z < WindingRows::kSide; ++z) {
-            for (int i = 0; i < mRows->lattice().rowCount(); i += mStride) visit(y, z, i);
+            for (int i = 0; i < lattice.rowCount(); ++i) {
+                if (mIsWider && !lattice.isOfWiderLattice(first.y() + y, first.z() + z, i)) {
+                    continue;
+                }
+                visit(y, z, i);
+            }
         }
     }
 }
@@ -155,14 +166,13 @@ void SoupSource::sampleElement(std::size_t i, const SamplingRegion& region,
                                std::vector<SurfaceSample>& samples) const {
     const std::int64_t bundle = mElements[i].bundle;
     const RowLattice& lattice = mRows->lattice();
-    const int next = mStride % lattice.rowCount();
     // Relative to a whole voxel, as a mesh is sampled.
     const Coord first = mRows->firstVoxel(bundle);
     const Vec3d base(mRows->xOrigin(), first.y(), first.z());
     const RegionClip clip({region.voxelSize, region.origin - base, region.extent});
     const double low = region.origin.x() - base.x(), high = low + region.extent.x();
     const Vec3d area(areaOfRow(), 0, 0);
-    forEachRow([&](int y, int z, int k) {
+    forEachRow(bundle, [&](int y, int z, int k) {
         const std::span<const float> row = mRows->row(bundle, y, z, k);
         Vec3d at(0, y + lattice.rows[k].y, z + lattice.rows[k].z);
         const auto begin = std::lower_bound(row.begin(), row.end(), low);
@@ -170,25 +180,32 @@ void SoupSource::sampleElement(std::size_t i, const SamplingRegion& region,
             at.x() = *x;
             clip.append(at, (x - row.begin()) % 2 == 0 ? -area : area, samples);
         }
-        // Mark the faces along x that lie between this row and others of the voxel, or its
-        // neighbours.
-        const auto mark = [&](float from, float to) {
-            const double end = std::min<double>(to, high);
-            const double skipped = std::floor((low - from) / kMarkSpacing);
-            for (at.x() = from + kMarkSpacing * std::max(0.0, skipped); at.x() < end;
-                 at.x() += kMarkSpacing) {
-                clip.append(at, Vec3d(0.0), samples);
-            }
-        };
-        if (k + next < lattice.rowCount()) {
-            forEachDifference(row, mRows->row(bundle, y, z, k + next), mark);
-        }
-        if (k != 0) return;
-        forEachDifference(row, rowNear(bundle, y + 1, z, 0), mark);
-        forEachDifference(row, rowNear(bundle, y, z + 1, 0), mark);
-        forEachDifference(row, rowNear(bundle, y - 1, z, 0), mark);
-        forEachDifference(row, rowNear(bundle, y, z - 1, 0), mark);
     });
+
+    // Mark the faces along x that lie between the rows of a voxel, or of it and its neighbours.
+    for (int voxel = 0; voxel < WindingRows::kSide * WindingRows::kSide; ++voxel) {
+        const int y = voxel / WindingRows::kSide, z = voxel % WindingRows::kSide;
+        for (int k = 0; k < lattice.rowCount(); ++k) {
+            Vec3d at(0, y + lattice.rows[k].y, z + lattice.rows[k].z);
+            const auto mark = [&](float from, float to) {
+                const double end = std::min<double>(to, high);
+                const double skipped = std::floor((low - from) / kMarkSpacing);
+                for (at.x() = from + kMarkSpacing * std::max(0.0, skipped); at.x() < end;
+                     at.x() += kMarkSpacing) {
+                    clip.append(at, Vec3d(0.0), samples);
+                }
+            };
+            const std::span<const float> row = mRows->row(bundle, y, z, k);
+            if (k + 1 < lattice.rowCount()) {
+                forEachDifference(row, mRows->row(bundle, y, z, k + 1), mark);
+            }
+            if (k != 0) continue;
+            forEachDifference(row, rowNear(bundle, y + 1, z, 0), mark);
+            forEachDifference(row, rowNear(bundle, y, z + 1, 0), mark);
+            forEachDifference(row, rowNear(bundle, y - 1, z, 0), mark);
+            forEachDifference(row, rowNear(bundle, y, z - 1, 0), mark);
+        }
+    }
 }
 
 }  // namespace bandvox

@@ -9,7 +9,7 @@ namespace bandvox {
 /// How a soup is made a solid and band-limited.
 struct SoupDensityOptions {
     DensityOptions density;  ///< as for the exact route; its tolerance is that of all but sampling
-    int rowsPerVoxel = 4;    ///< P; P² rows through a voxel follow the solid; 1 to 64
+    int rowsPerVoxel = 4;    ///< P; P² + 1 rows through a voxel follow the solid; 1 to 64
     double samplingTolerance = 0.1;  ///< sampling error allowed without a warning, density; ≥ 0
 };
 
@@ -18,12 +18,11 @@ struct SoupDensityOptions {
 /// number is followed along rows (SoupSource), and where they enter and leave it is integrated
 /// over as the exact route does with samples of a surface (docs/any-mesh.md).
 ///
-/// Lattice and grid are as those of surfaceToDensity. What the rows cannot tell is measured, for an
-/// even number of them, by the difference from half as many along either side; that is stored as
-/// the sampling error, which it exceeds several times on ordinary meshes (docs/any-mesh.md), and is
-/// a warning if above `samplingTolerance`. For an odd number the error is not known, which is a
-/// warning, too. Throws as surfaceToDensity, and Error(ErrorKind::Result)
-/// if the soup encloses nothing.
+/// Lattice and grid are as those of surfaceToDensity. What the rows cannot tell is measured by the
+/// difference from every fourth of them; that is stored as the sampling error, several times as
+/// large as it is on ordinary meshes (docs/any-mesh.md), and is a warning if above
+/// `samplingTolerance`. Throws as surfaceToDensity, and Error(ErrorKind::Result) if the soup
+/// encloses nothing.
 DensityResult soupToDensity(const SoupOfTriangles& triangles,
                             const SoupDensityOptions& options = {},
                             Progress& progress = silentProgress());

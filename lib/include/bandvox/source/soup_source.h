@@ -23,7 +23,7 @@ struct SoupOfTriangles {
 /// For which lattice a soup of triangles is made a solid.
 struct SoupOptions {
     double voxelSize = 1;         ///< world units
-    int rowsPerVoxel = 4;         ///< P; P² rows pass through a voxel; 1 to 64
+    int rowsPerVoxel = 4;         ///< P; P² + 1 rows pass through a voxel; 1 to 64
     const Mesh* solid = nullptr;  ///< closed; what is inside of it is taken away
 };
 
@@ -43,7 +43,7 @@ class SoupSource final : public BoundarySource {
                Progress& progress = silentProgress());
     ~SoupSource() override;
 
-    /// The same with every fourth row, that is P / 2, to compare with. P is even.
+    /// The same with every fourth row, which make up a lattice of twice the width, to compare with.
     std::unique_ptr<SoupSource> withFewerRows() const;
 
     /// How many rows there are, and how many winding numbers had to be computed for them.
@@ -67,16 +67,16 @@ class SoupSource final : public BoundarySource {
         std::int64_t bundle;
         openvdb::BBoxd bounds;
     };
-    SoupSource(const SoupSource& all, int stride);
+    SoupSource(const SoupSource& all, bool isWider);
     void findElements();
     double areaOfRow() const;
     std::span<const float> rowNear(std::int64_t bundle, int y, int z, int i) const;
     template <typename Visit>
-    void forEachRow(const Visit& visit) const;
+    void forEachRow(std::int64_t bundle, const Visit& visit) const;
 
     std::string mName;
     std::shared_ptr<const WindingRows> mRows;
-    int mStride = 1;  // every so many rows of a voxel are used
+    bool mIsWider = false;  // only the rows of the lattice twice as wide are used
     std::vector<Element> mElements;
     openvdb::BBoxd mBounds;
     double mVolume = 0, mArea = 0;
