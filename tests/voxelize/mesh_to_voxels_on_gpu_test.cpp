@@ -5,12 +5,16 @@
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/parallel.h>
+#include <bandvox/source/close_mesh.h>
+#include <bandvox/source/read_mesh.h>
 #include <bandvox/voxelize/mesh_to_voxels.h>
 #include <bandvox/voxelize/mesh_to_voxels_on_gpu.h>
 
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstdlib>
+#include <filesystem>
 #include <thread>
 
 namespace bandvox {
@@ -254,6 +258,16 @@ TEST_F(MeshToVoxelsOnGpu, SaysWhatOpenGlSays) {
     const std::string wrong = messageOf([] { checkGl("trying"); });
     EXPECT_EQ(wrong, "OpenGL failed with GL_INVALID_ENUM while trying");
     EXPECT_EQ(messageOf([] { checkGl("trying"); }), "");
+}
+
+TEST_F(MeshToVoxelsOnGpu, AgreesWithTheCpuOnRealMeshes) {
+    const char* folder = std::getenv("BANDVOX_TEST_DATA");
+    if (folder == nullptr) GTEST_SKIP() << "BANDVOX_TEST_DATA is not set";
+    for (const char* name : {"stanford-bunny.obj", "fandisk.obj"}) {
+        const Mesh mesh = closeMesh(readMesh(std::filesystem::path(folder) / name).mesh).mesh;
+        const VoxelOptions options{.resolution = 200, .fraction = true};
+        test::expectSameVoxels(onCpu(mesh, options), onGpu(mesh, options, {}));
+    }
 }
 
 // No OpenGL is needed to be refused.
