@@ -136,6 +136,23 @@ TEST_F(MeshToVoxelsOnGpu, LargeTrianglesReachOverTiles) {
     }
 }
 
+TEST_F(MeshToVoxelsOnGpu, AgreesAtTheLargestSize) {
+    // A slanted bar along each axis, which takes all 31 bits of a coordinate.
+    for (int axis = 0; axis < 3; ++axis) {
+        SCOPED_TRACE(axis);
+        Mesh mesh = test::cube(Vec3d(0.0), 1);
+        for (Vec3d& p : mesh.points) {
+            const Vec3d bar(16360 * p.x(), 3 * p.y() + 11.3 * p.x(), 4 * p.z() + 7.9 * p.x());
+            for (int i = 0; i < 3; ++i) p[(axis + i) % 3] = bar[i] + 0.25 * i;
+        }
+        const VoxelResult expected = onCpu(mesh, {.voxelSize = 1});
+        EXPECT_GT(expected.voxels, 190000);
+        for (const ScanAxis scan : kAxes) {
+            test::expectSameVoxels(expected, onGpu(mesh, {.voxelSize = 1, .axis = scan}, {}));
+        }
+    }
+}
+
 TEST_F(MeshToVoxelsOnGpu, AgreesWithTheFormulaOfATurnedCube) {
     // What is within this distance of the surface, in voxels, may round either way.
     constexpr double kBand = 1e-5;
