@@ -148,12 +148,13 @@ VoxelizedSolid voxelize(CommandRun& run, const VoxelizeRequest& request) {
 }
 
 /// Says what was made; warns if the voxels are too few to tell the solid's size.
-void sayResult(CommandRun& run, VoxelizedSolid& solid) {
+void sayResult(CommandRun& run, const VoxelizeRequest& request, VoxelizedSolid& solid) {
     const openvdb::FloatGrid& grid = *solid.result.grid;
     const openvdb::Coord size = grid.evalActiveVoxelBoundingBox().dim();
+    const std::string where = request.voxels.fraction ? " inside or in part" : " inside";
     run.say("grid     " + std::to_string(size.x()) + " x " + std::to_string(size.y()) + " x " +
             std::to_string(size.z()) + " voxels of side " + formatNumber(grid.voxelSize().x()) +
-            ", " + formatCount(solid.result.voxels, "voxel inside", "voxels inside"));
+            ", " + formatCount(solid.result.voxels, "voxel", "voxels") + where);
     const double volume = solid.result.volume;
     run.count("voxels_inside", solid.result.voxels);
     run.count("backend", solid.result.device.empty() ? "cpu" : "gpu");
@@ -223,7 +224,7 @@ void runVoxelize(const CommandLine& line) {
     AtomicFile output(request.output);
 
     VoxelizedSolid solid = voxelize(run, request);
-    sayResult(run, solid);
+    sayResult(run, request, solid);
     run.warn(solid.result.warnings, ErrorKind::Result);
 
     run.writeOutput(output, [&](AtomicFile& file) {

@@ -1,16 +1,21 @@
 #include "voxelize/gl_context.h"
 #include "voxelize/gl_objects.h"
 #include "voxelize/gpu_work.h"
+#include "voxelize/lattice_points.h"
 #include "voxelize/voxel_meshes.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/parallel.h>
+#include <bandvox/source/close_mesh.h>
+#include <bandvox/source/read_mesh.h>
 #include <bandvox/voxelize/mesh_to_voxels.h>
 #include <bandvox/voxelize/mesh_to_voxels_on_gpu.h>
 
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstdlib>
+#include <filesystem>
 #include <thread>
 
 namespace bandvox {
@@ -128,6 +133,36 @@ TEST_F(MeshToVoxelsOnGpu, LargeTrianglesReachOverTiles) {
              {GpuLimits{}, GpuLimits{.side = 128}, GpuLimits{.bufferBytes = 1 << 18}}) {
             test::expectSameVoxels(expected,
                                    onGpu(mesh, {.voxelSize = 1}, {GpuMethod::Bits, limits}));
+        }
+    }
+}
+
+TEST_F(MeshToVoxelsOnGpu, AgreesAtTheLargestSize) {
+    // Slanted bars along each axis, which take all 31 bits of a coordinate. The second one's
+    // corners lie anywhere on the planes x = 2y and x = 2y + 5, which hold many samples: sums of so
+    // many bits do not fit into doubles, so they cannot tell.
+    const auto rounded = [](double x) { return std::round(x * kVoxel) / kVoxel; };
+    Mesh first = test::cube(Vec3d(0.0), 1), second = first;
+    for (Vec3d& p : first.points) {
+        p = p.x() * Vec3d(16360, 11.3, 7.9) + Vec3d(0, 3 * p.y(), 4 * p.z());
+    }
+    for (Vec3d& p : second.points) {
+        const double y = rounded(0.3 + 8170.7 * p.y() + 0.61 * p.z());
+        p = Vec3d(2 * y + 5 * p.x(), y, rounded(0.3 + 0.17 * p.x() + 3.77 * p.z()));
+    }
+    for (const Mesh& bar : {first, second}) {
+        for (int axis = 0; axis < 3; ++axis) {
+            SCOPED_TRACE(axis);
+            Mesh mesh = bar;
+            for (Vec3d& p : mesh.points) {
+                const Vec3d q = p;
+                for (int i = 0; i < 3; ++i) p[(axis + i) % 3] = q[i];
+            }
+            const VoxelResult expected = onCpu(mesh, {.voxelSize = 1});
+            EXPECT_GT(expected.voxels, 140000);
+            for (const ScanAxis scan : kAxes) {
+                test::expectSameVoxels(expected, onGpu(mesh, {.voxelSize = 1, .axis = scan}, {}));
+            }
         }
     }
 }
@@ -254,6 +289,16 @@ TEST_F(MeshToVoxelsOnGpu, SaysWhatOpenGlSays) {
     const std::string wrong = messageOf([] { checkGl("trying"); });
     EXPECT_EQ(wrong, "OpenGL failed with GL_INVALID_ENUM while trying");
     EXPECT_EQ(messageOf([] { checkGl("trying"); }), "");
+}
+
+TEST_F(MeshToVoxelsOnGpu, AgreesWithTheCpuOnRealMeshes) {
+    const char* folder = std::getenv("BANDVOX_TEST_DATA");
+    if (folder == nullptr) GTEST_SKIP() << "BANDVOX_TEST_DATA is not set";
+    for (const char* name : {"stanford-bunny.obj", "fandisk.obj"}) {
+        const Mesh mesh = closeMesh(readMesh(std::filesystem::path(folder) / name).mesh).mesh;
+        const VoxelOptions options{.resolution = 200, .fraction = true};
+        test::expectSameVoxels(onCpu(mesh, options), onGpu(mesh, options, {}));
+    }
 }
 
 // No OpenGL is needed to be refused.

@@ -7,8 +7,6 @@
 #include <epoxy/gl.h>
 
 #include <array>
-#include <map>
-#include <mutex>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -114,31 +112,6 @@ std::vector<EGLDisplay> eglDisplays() {
     return displays;
 }
 
-// A display is one for the whole process: the last of our contexts on it ends its use.
-class DisplayUse {
-  public:
-    static bool begin(EGLDisplay display) {
-        const std::lock_guard lock(mutex());
-        if (users()[display] == 0 && !eglInitialize(display, nullptr, nullptr)) return false;
-        ++users()[display];
-        return true;
-    }
-    static void end(EGLDisplay display) {
-        const std::lock_guard lock(mutex());
-        if (--users()[display] == 0) eglTerminate(display);
-    }
-
-  private:
-    static std::mutex& mutex() {
-        static std::mutex instance;
-        return instance;
-    }
-    static std::map<EGLDisplay, int>& users() {
-        static std::map<EGLDisplay, int> instance;
-        return instance;
-    }
-};
-
 EGLContext createGlContext(EGLDisplay display) {
     // Ask to be told of lost contexts; do without if that cannot be.
     const bool canTell = epoxy_egl_version(display) >= 15 ||
@@ -197,8 +170,9 @@ GlContext::GlContext() {
         if (failures.find(failure) == std::string::npos) failures += "; " + failure;
     }
     if (!mContext) {
+        eglBindAPI(mPrevious.api);
         failGl("EGL offers no OpenGL 4.3 without a window" +
-               (failures.empty() ? "; it knows no display" : failures));
+               (failures.empty() ? "; it knows no display, so there is no driver" : failures));
     }
     try {
         mDevice = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
@@ -214,7 +188,8 @@ GlContext::~GlContext() {
 }
 
 bool GlContext::open(void* display, std::string& failure) {
-    if (!DisplayUse::begin(display)) {
+    // A display is one for the whole process, and others may use it: it is never terminated.
+    if (!eglInitialize(display, nullptr, nullptr)) {
         failure = "eglInitialize: " + eglErrorName();
         return false;
     }
@@ -233,18 +208,13 @@ bool GlContext::open(void* display, std::string& failure) {
         eglDestroyContext(display, mContext);
         mContext = nullptr;
     }
-    if (!mContext) {
-        DisplayUse::end(display);
-        return false;
-    }
     mDisplay = display;
-    return true;
+    return mContext != nullptr;
 }
 
 void GlContext::close() {
     eglMakeCurrent(mDisplay, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(mDisplay, mContext);
-    DisplayUse::end(mDisplay);
     eglBindAPI(mPrevious.api);
     if (mPrevious.context != EGL_NO_CONTEXT) {
         eglMakeCurrent(mPrevious.display, mPrevious.draw, mPrevious.read, mPrevious.context);
@@ -259,11 +229,10 @@ void GlContext::requireExtensions() {
                "." + std::to_string(epoxy_gl_version() % 10) + "; expected 4.3");
     }
     // Doubles are part of OpenGL 4.0.
-    for (const char* name : {"GL_ARB_gpu_shader_int64"}) {
-        if (!epoxy_has_gl_extension(name)) {
-            failGl(mDevice + ": its OpenGL lacks the extension " + name +
-                   ", which exact crossings need");
-        }
+    const char* const name = "GL_ARB_gpu_shader_int64";
+    if (!epoxy_has_gl_extension(name)) {
+        failGl(mDevice + ": its OpenGL lacks the extension " + name +
+               ", which exact crossings need");
     }
 }
 

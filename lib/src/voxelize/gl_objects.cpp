@@ -2,9 +2,9 @@
 
 #include <bandvox/core/error.h>
 
+#include <algorithm>
 #include <array>
 #include <sstream>
-#include <vector>
 
 namespace bandvox {
 
@@ -58,8 +58,10 @@ std::string shaderLog(GLuint name, decltype(glGetShaderiv) get, decltype(glGetSh
     GLint length = 0;
     get(name, GL_INFO_LOG_LENGTH, &length);
     std::string text(static_cast<std::size_t>(std::max(length, 1)), '\0');
-    read(name, static_cast<GLsizei>(text.size()), nullptr, text.data());
-    return text.c_str();
+    GLsizei written = 0;
+    read(name, static_cast<GLsizei>(text.size()), &written, text.data());
+    text.resize(static_cast<std::size_t>(written));
+    return text;
 }
 
 GLuint compileShader(GLenum kind, const std::string& source) {

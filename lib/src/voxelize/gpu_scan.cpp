@@ -10,13 +10,12 @@
 #include "voxelize/lattice_points.h"
 #include "voxelize/mesh_patches.h"
 
-#include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>
 #include <bandvox/core/parallel.h>
 
 #include <algorithm>
 #include <array>
-#include <sstream>
+#include <utility>
 
 namespace bandvox {
 

@@ -45,7 +45,7 @@ int64_t cross2(ivec2 u, ivec2 v) {
 }
 
 // The side of an edge on which a row lies. One on the edge stands for the row next to it at
-// (y + ε, z + ε²), so neighbours along an edge never both have it, nor both not.
+// (y + e, z + e e) for a small e, so neighbours along an edge never both have it, nor both not.
 bool isLeft(int64_t w, ivec2 edge) {
     return w > 0L || (w == 0L && (edge.y < 0 || (edge.y == 0 && edge.x > 0)));
 }

@@ -1,9 +1,7 @@
 #include "voxelize/lattice_points.h"
 
 #include <bandvox/core/memory.h>
-#include <bandvox/core/parallel.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace bandvox {
