@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Draws the plots of docs/experiments/README.md from the tables in data/, and prints the slopes
-and constants that it quotes. Needs the Debian package python3-matplotlib (scripts/setup
---experiments)."""
+"""Draws the plots of docs/experiments/README.md and docs/voxelize.md from the tables in data/, and
+prints the slopes and constants that they quote. Needs the Debian package python3-matplotlib
+(scripts/setup --experiments)."""
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.lines import Line2D
 from plot_oversampling import plot_question
+from plot_voxelization import plot_voxelization
 from tables import COLOURS, FILTERS, column, name_of, read, save, select
 from theory import curvature_constant, face_slope
 
@@ -109,6 +110,7 @@ def main():
     plot_near_objects()
     plot_lost_detail()
     plot_volume()
+    plot_voxelization()
 
 
 if __name__ == "__main__":

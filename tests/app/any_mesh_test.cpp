@@ -178,7 +178,7 @@ TEST_F(AnyMesh, WhatNoCapsCloseGoesByItsWindingNumber) {
     EXPECT_EQ(box.route, "winding");
     EXPECT_NEAR(box.gridVolume, 8, 0.1);
     EXPECT_GT(box.samplingError, 0);
-    EXPECT_LT(box.samplingError, 0.1);
+    EXPECT_LT(box.samplingError, 0.05);
     EXPECT_NE(mErrors.find("6 pieces of 12 triangles are not closed"), std::string::npos)
         << mErrors;
     EXPECT_NE(mErrors.find("measured by halving the samples"), std::string::npos) << mErrors;

@@ -10,7 +10,7 @@ namespace bandvox {
 struct SoupDensityOptions {
     DensityOptions density;  ///< as for the exact route; its tolerance is that of all but sampling
     int rowsPerVoxel = 4;    ///< P; P² + 1 rows through a voxel follow the solid; 1 to 64
-    double samplingTolerance = 0.1;  ///< sampling error allowed without a warning, density; ≥ 0
+    double samplingTolerance = 0.05;  ///< sampling error allowed without a warning, density; ≥ 0
 };
 
 /// Turns the places that a soup winds around by more than half, and those in the solid beside it,
