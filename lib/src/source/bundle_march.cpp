@@ -53,8 +53,9 @@ BundleMarch::BundleMarch(const WindingTree& tree, const WindingMap& map, const B
     for (std::size_t i = 0; i < mRows.size(); ++i) {
         const auto voxel = static_cast<int>(i / lattice.rows.size());
         const RowLattice::Place& at = lattice.rows[i % lattice.rows.size()];
-        mRows[i].y = lattice.voxelSize * (place.firstVoxel.y() + voxel / WindingRows::kSide + at.y);
-        mRows[i].z = lattice.voxelSize * (place.firstVoxel.z() + voxel % WindingRows::kSide + at.z);
+        const int y = voxel / WindingRows::kSide, z = voxel % WindingRows::kSide;
+        mRows[i].y = lattice.voxelSize * (place.firstVoxel.y() + y + at.y);
+        mRows[i].z = lattice.voxelSize * (place.firstVoxel.z() + z + at.z);
     }
 }
 
