@@ -51,6 +51,21 @@ TEST(SeparateSoup, PanelsAreSoup) {
     }
 }
 
+TEST(SeparateSoup, PanelsThatDisagreeAreTurned) {
+    for (unsigned which = 1; which < 63; which += 3) {
+        Mesh mesh = test::askew(test::panels(0.03));
+        for (unsigned panel = 0; panel < 6; ++panel) {
+            if ((which >> panel & 1) == 0) continue;
+            for (unsigned k = 0; k < 2; ++k) {
+                std::swap(mesh.triangles[2 * panel + k][1], mesh.triangles[2 * panel + k][2]);
+            }
+        }
+        const ClosedMesh closed = close(mesh);
+        EXPECT_EQ(closed.report.soupPieces, 6u) << which;
+        EXPECT_NEAR(WindingNumber(closed.soup).exactAt(Vec3d(0.1)), 1, 0.1) << which;
+    }
+}
+
 TEST(SeparateSoup, ShellsThatWereCutUpAreSoup) {
     const ClosedMesh closed = close(octants(0.01));
     EXPECT_EQ(closed.report.soupPieces, 8u);

@@ -260,7 +260,8 @@ ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progr
     // Turn them outward. Triangles without area stay: their neighbours' edges are theirs.
     const TurnedComponents turned = turnOutward(mesh, components);
     report.componentsTurned = turned.components;
-    report.trianglesFlipped = components.trianglesFlipped + turned.triangles;
+    report.trianglesFlipped =
+        components.trianglesFlipped + separated.trianglesFlipped + turned.triangles;
     if (report.problem.empty()) report.problem = problemOfVolume(mesh);
     if (report.soupTriangles > 0 && !report.problem.empty()) {
         // What encloses nothing adds nothing to the soup.

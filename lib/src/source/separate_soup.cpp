@@ -1,5 +1,6 @@
 #include "source/separate_soup.h"
 
+#include "source/orient_by_rays.h"
 #include "source/weld_points.h"
 
 #include <bandvox/source/winding_number.h>
@@ -43,6 +44,8 @@ struct OpenPiece {
     double volume = 0;  // caps included
     double capArea = 0;
     std::vector<std::uint32_t> caps;  // the largest first
+
+    bool isRound() const { return std::abs(volume) > kRound * std::pow(area + capArea, 1.5); }
 };
 
 Vec3d areaVector(const Mesh& mesh, const Vec3I& t) {
@@ -197,10 +200,7 @@ SeparatedSoup split(Mesh& mesh, MeshComponents& components, std::size_t firstCap
             solid.push_back(t);
             rest.ofTriangle.push_back(renumbered[c]);
         } else if (i < firstCap) {
-            const OpenPiece& piece = pieces[c];
-            const bool isRound =
-                std::abs(piece.volume) > kRound * std::pow(piece.area + piece.capArea, 1.5);
-            if (isRound ? piece.volume < 0 : isInsideOut) std::swap(t[1], t[2]);
+            if (pieces[c].isRound() ? pieces[c].volume < 0 : isInsideOut) std::swap(t[1], t[2]);
             separated.soup.triangles.push_back(t);
         }
     }
@@ -216,15 +216,31 @@ SeparatedSoup split(Mesh& mesh, MeshComponents& components, std::size_t firstCap
 
 SeparatedSoup separateSoup(Mesh& mesh, MeshComponents& components, std::size_t firstCap) {
     if (firstCap == mesh.triangles.size()) return {};
-    const std::vector<OpenPiece> pieces = measure(mesh, components, firstCap);
+    std::vector<OpenPiece> pieces = measure(mesh, components, firstCap);
     double area = 0, capArea = 0;
     for (const OpenPiece& piece : pieces) {
         area += piece.area;
         capArea += piece.capArea;
     }
     if (capArea < kLeastCaps * area) return {};
+    // Turn flat pieces first, whose own shape does not tell what is outside.
+    std::size_t flipped = 0;
+    std::vector<char> isFlat(pieces.size(), 0);
+    double flatArea = 0;
+    for (std::size_t c = 0; c < pieces.size(); ++c) {
+        if (pieces[c].caps.empty() || pieces[c].isRound()) continue;
+        isFlat[c] = 1;
+        flatArea += pieces[c].area;
+    }
+    if (flatArea > kLeastCaps * area) {
+        flipped = orientByRays(mesh, components.ofTriangle, isFlat, firstCap);
+        if (flipped > 0) pieces = measure(mesh, components, firstCap);
+    }
     const CapJudge caps(mesh, firstCap);
-    return split(mesh, components, firstCap, pieces, judge(pieces, caps), caps.isInsideOut());
+    SeparatedSoup separated =
+        split(mesh, components, firstCap, pieces, judge(pieces, caps), caps.isInsideOut());
+    separated.trianglesFlipped = flipped;
+    return separated;
 }
 
 SeparatedSoup separateAll(Mesh& mesh, MeshComponents& components, std::size_t firstCap) {
