@@ -26,6 +26,7 @@ const std::pair<std::string, void (*)(const Folder&)> kExperiments[] = {
     {"lost-detail", measureLostDetail},    {"volume", measureVolume},
     {"stated-error", measureStatedError},  {"voxel-accuracy", measureVoxelAccuracy},
     {"voxel-times", measureVoxelTimes},    {"winding", measureWinding},
+    {"normals", measureNormals},
 };
 
 void run(const Folder& folder, const std::vector<std::string>& wanted) {

@@ -26,6 +26,9 @@ void measureVolume(const Folder& folder);
 /// place.
 void measureStatedError(const Folder& folder);
 
+/// The error of a picture's normals.
+void measureNormals(const Folder& folder);
+
 /// How far surface voxels are from the true surface, by the threshold of their sub-samples, and how
 /// far the surface of a band-limited density is.
 void measureVoxelAccuracy(const Folder& folder);

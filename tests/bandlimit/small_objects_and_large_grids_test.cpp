@@ -1,6 +1,7 @@
 // What surfaceToDensity does at the ends of its range: objects of few voxels, and of many.
 
 #include "allocation_meter.h"
+#include "source/test_meshes.h"
 
 #include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/core/error.h>
@@ -74,6 +75,18 @@ TEST(SmallObjects, TeethFinerThanTheLatticeKeepToTheTolerance) {
 }
 
 // Twice the resolution is four times the surface; a part does not grow, and borders vary.
+// A tile sees millions of samples, each far less than the rounding of what they add up to.
+TEST(SmallObjects, AMeshFarFinerThanTheLatticeKeepsToTheTolerance) {
+    const Mesh ball = test::sphere(Vec3d(0.01, 0.02, 0.03), 1, 500, 1000);
+    const MeshSource source("ball", ball);
+    DensityOptions options;
+    options.voxelSize = 2.0 / 48;
+    const DensityResult result = surfaceToDensity(source, options);
+    EXPECT_GT(result.surfaceSamples, 1000000);
+    EXPECT_LE(result.metadata.closureError, 5e-5);
+    EXPECT_NEAR(result.metadata.gridVolume / source.volume(), 1, 2e-5);
+}
+
 TEST(LargeGrids, MemoryFollowsTheSurface) {
     const std::size_t small = peakOfCube(150);
     const std::size_t large = peakOfCube(300);

@@ -9,6 +9,14 @@
 
 namespace bandvox {
 
+namespace {
+
+// More samples of a tile than this are summed up so many at a time.
+constexpr std::size_t kFewSamples = 1 << 17;
+constexpr std::size_t kSamplesTogether = 2048;
+
+}  // namespace
+
 TileFilter::TileFilter(const TilePlan& plan)
     : mPlan(plan),
       mShift((plan.kernel.width() + 1) / 2),
@@ -55,8 +63,50 @@ openvdb::Vec3d TileFilter::regionOffset() const {
 }
 
 void TileFilter::spread(std::span<const SurfaceSample> samples, float* buffer) const {
-    spreadSamples(samples, static_cast<float>(mShift), mPlan.kernel,
-                  {buffer, mFft.yCount(), mFft.zStride()});
+    const auto offset = static_cast<float>(mShift);
+    const SpreadLattice lattice{buffer, mFft.yCount(), mFft.zStride()};
+    if (samples.size() <= kFewSamples) {
+        spreadSamples(samples, offset, mPlan.kernel, lattice);
+        return;
+    }
+    // Of millions of samples, each is too little to be added to the sum of all others in single
+    // precision: sum up some, then their sums.
+    std::vector<float> part(mFft.bufferSize(), 0.0F);
+    while (!samples.empty()) {
+        const auto some = samples.first(std::min(samples.size(), kSamplesTogether));
+        samples = samples.subspan(some.size());
+        spreadSamples(some, offset, mPlan.kernel, {part.data(), lattice.yCount, lattice.zStride});
+        moveNodes(nodesUnder(some), part.data(), buffer);
+    }
+}
+
+// The nodes that samples may have been spread to.
+openvdb::CoordBBox TileFilter::nodesUnder(std::span<const SurfaceSample> samples) const {
+    openvdb::math::BBox<openvdb::Vec3f> box;
+    for (const SurfaceSample& sample : samples) box.expand(sample.position);
+    const int reach = mPlan.kernel.paddedWidth() + 1;
+    const openvdb::Coord count(mFft.xCount(), mFft.yCount(), mFft.zStride());
+    openvdb::CoordBBox nodes;
+    for (int axis = 0; axis < 3; ++axis) {
+        nodes.min()[axis] = std::max(static_cast<int>(box.min()[axis]) + mShift - reach, 0);
+        nodes.max()[axis] =
+            std::min(static_cast<int>(box.max()[axis]) + mShift + reach, count[axis] - 1);
+    }
+    return nodes;
+}
+
+// Adds what is in a part to the buffer, and leaves zeros there.
+void TileFilter::moveNodes(const openvdb::CoordBBox& nodes, float* part, float* buffer) const {
+    const int length = nodes.dim().z();
+    for (int x = nodes.min().x(); x <= nodes.max().x(); ++x) {
+        for (int y = nodes.min().y(); y <= nodes.max().y(); ++y) {
+            const std::size_t row =
+                (static_cast<std::size_t>(x) * mFft.yCount() + y) * mFft.zStride() +
+                nodes.min().z();
+            for (int z = 0; z < length; ++z) buffer[row + z] += part[row + z];
+            std::fill_n(part + row, length, 0.0F);
+        }
+    }
 }
 
 void TileFilter::apply(float* buffer) const {

@@ -42,6 +42,8 @@ class TileFilter {
     }
 
   private:
+    openvdb::CoordBBox nodesUnder(std::span<const SurfaceSample> samples) const;
+    void moveNodes(const openvdb::CoordBBox& nodes, float* part, float* buffer) const;
     void fold(float* buffer) const;
     void multiply(float* buffer) const;
 
