@@ -71,11 +71,9 @@ class BrickProbe final : public DensityProbe {
 
 class BrickReconstruction final : public Reconstruction {
   public:
-    BrickReconstruction(openvdb::FloatGrid::ConstPtr grid,
-                        const BrickReconstructionOptions& options)
-        : mBackground(grid->background()),
-          mCache(std::move(grid), designInterpolation(options.filter, options.tolerance),
-                 options.cacheBytes) {}
+    BrickReconstruction(openvdb::FloatGrid::ConstPtr grid, InterpolationDesign design,
+                        std::size_t cacheBytes)
+        : mBackground(grid->background()), mCache(std::move(grid), std::move(design), cacheBytes) {}
 
     double value(const openvdb::Vec3d& index) const override {
         return BrickProbe(mCache, mBackground).value(index);
@@ -94,16 +92,29 @@ class BrickReconstruction final : public Reconstruction {
     mutable BrickCache mCache;
 };
 
+void requireGrid(const openvdb::FloatGrid::ConstPtr& grid) {
+    if (!grid) throw Error(ErrorKind::Usage, "a reconstruction needs a grid, but got none");
+}
+
 }  // namespace
 
 std::unique_ptr<Reconstruction> makeBrickReconstruction(openvdb::FloatGrid::ConstPtr grid,
                                                         const BrickReconstructionOptions& options) {
-    if (!grid) throw Error(ErrorKind::Usage, "a reconstruction needs a grid, but got none");
+    requireGrid(grid);
     if (!(options.tolerance >= 1e-6 && options.tolerance <= 0.1)) {
         throw Error(ErrorKind::Usage, "the tolerance of a reconstruction is " +
                                           inShort(options.tolerance) + "; it must be 1e-6 to 0.1");
     }
-    return std::make_unique<BrickReconstruction>(std::move(grid), options);
+    return std::make_unique<BrickReconstruction>(
+        std::move(grid), designInterpolation(options.filter, options.tolerance),
+        options.cacheBytes);
+}
+
+std::unique_ptr<Reconstruction> makeSplineReconstruction(openvdb::FloatGrid::ConstPtr grid,
+                                                         std::size_t cacheBytes) {
+    requireGrid(grid);
+    return std::make_unique<BrickReconstruction>(std::move(grid), splineInterpolation(),
+                                                 cacheBytes);
 }
 
 }  // namespace bandvox

@@ -220,4 +220,13 @@ InterpolationDesign designInterpolation(const ExponentialFilter& filter, double 
                                       inShort(filter.atNyquist()) + " at Nyquist");
 }
 
+InterpolationDesign splineInterpolation() {
+    // The inverse of the B-spline's values 1/6, 2/3, 1/6 at the nodes: √3 z^|l|.
+    constexpr int kReach = 13;  // |z|^13 is 4e-8
+    const double z = std::sqrt(3.0) - 2;
+    std::vector<double> prefilter;
+    for (int l = 0; l <= kReach; ++l) prefilter.push_back(std::sqrt(3.0) * std::pow(z, l));
+    return {SpreadingKernel::cubicSpline(), std::move(prefilter)};
+}
+
 }  // namespace bandvox

@@ -25,4 +25,7 @@ double faceGradient(const ExponentialFilter& filter);
 /// relative to a flat face's. Throws Error(ErrorKind::Usage) if there is none.
 InterpolationDesign designInterpolation(const ExponentialFilter& filter, double tolerance);
 
+/// The cubic B-spline through the lattice's values, to a float's precision.
+InterpolationDesign splineInterpolation();
+
 }  // namespace bandvox

@@ -78,13 +78,28 @@ SpreadingKernel::SpreadingKernel(int width, double beta)
     fitPolynomials();
 }
 
+SpreadingKernel::SpreadingKernel() : mWidth(4), mBeta(0), mScale(1) {
+    fitPolynomials();
+}
+
 double SpreadingKernel::operator()(double x) const {
+    if (isSpline()) {
+        const double r = std::abs(x);
+        if (r >= 2) return 0;
+        return r >= 1 ? std::pow(2 - r, 3) / 6 : 2.0 / 3 - r * r + 0.5 * r * r * r;
+    }
     const double u = 2 * x / mWidth;
     if (std::abs(u) > 1) return 0;
     return mScale * std::cyl_bessel_i(0.0, mBeta * std::sqrt(1 - u * u));
 }
 
 double SpreadingKernel::derivative(double x) const {
+    if (isSpline()) {
+        const double r = std::abs(x);
+        if (r >= 2) return 0;
+        const double slope = r >= 1 ? -0.5 * (2 - r) * (2 - r) : -2 * r + 1.5 * r * r;
+        return x < 0 ? -slope : slope;
+    }
     const double u = 2 * x / mWidth;
     if (std::abs(u) > 1) return 0;
     // I_1(z) / z, which is 1/2 at the kernel's end.
@@ -94,6 +109,10 @@ double SpreadingKernel::derivative(double x) const {
 }
 
 double SpreadingKernel::transform(double k) const {
+    if (isSpline()) {
+        const double angle = pi * k;
+        return std::abs(angle) < 1e-9 ? 1 : std::pow(std::sin(angle) / angle, 4);
+    }
     return kernelTransform(mWidth, mBeta, k) / sinhRatio(mBeta * mBeta);
 }
 

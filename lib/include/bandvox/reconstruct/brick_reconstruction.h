@@ -30,4 +30,14 @@ struct BrickReconstructionOptions {
 std::unique_ptr<Reconstruction> makeBrickReconstruction(openvdb::FloatGrid::ConstPtr grid,
                                                         const BrickReconstructionOptions& options);
 
+/// What goes through the values of a lattice that nobody has band-limited: the interpolating cubic
+/// B-spline, which has two continuous derivatives, in the same bricks. Where values jump from node
+/// to node it overshoots by up to a quarter of the jump. Inactive voxels and tiles count as they
+/// are.
+///
+/// M. Unser, A. Aldroubi, M. Eden: "B-Spline Signal Processing" (1993). Throws
+/// Error(ErrorKind::Usage) if `grid` is null.
+std::unique_ptr<Reconstruction> makeSplineReconstruction(openvdb::FloatGrid::ConstPtr grid,
+                                                         std::size_t cacheBytes = 512u << 20);
+
 }  // namespace bandvox

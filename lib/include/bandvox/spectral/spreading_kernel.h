@@ -6,8 +6,8 @@
 
 namespace bandvox {
 
-/// The compact kernel ψ that carries weights between arbitrary places and the lattice: the
-/// Kaiser-Bessel window's partner with a closed transform,
+/// The compact kernel ψ that carries weights between arbitrary places and the lattice: the cubic
+/// B-spline, or the Kaiser-Bessel window's partner with a closed transform,
 ///     ψ(x) = I_0(β √(1 - (2x/w)²)) · c  for |x| ≤ w/2, else 0,
 ///     ψ̂(k) = sinh(√(β² - (πwk)²)) / √(β² - (πwk)²) · β / sinh β,
 /// scaled so that ψ̂(0) = 1.
@@ -24,8 +24,11 @@ class SpreadingKernel {
     /// `width` in voxels, 2 to kMaximumWidth; `beta` > 0.
     SpreadingKernel(int width, double beta);
 
+    /// The cubic B-spline, whose width is 4.
+    static SpreadingKernel cubicSpline() { return SpreadingKernel(); }
+
     int width() const { return mWidth; }
-    double beta() const { return mBeta; }
+    double beta() const { return mBeta; }  ///< 0 of the B-spline
 
     /// ψ(x), x in voxels, by its formula.
     double operator()(double x) const;
@@ -54,6 +57,8 @@ class SpreadingKernel {
     int polynomialDegree() const { return mDegree; }
 
   private:
+    SpreadingKernel();
+    bool isSpline() const { return mBeta == 0; }
     void fitPolynomials();
 
     int mWidth;
