@@ -1,34 +1,23 @@
-#include "reconstruct/interpolation_design.h"
 #include "render/picture.h"
 #include "render/picture_request.h"
 #include "render/ray_march.h"
 #include "render/surface_blocks.h"
+#include "render/surface_field.h"
 #include "render/voxels_to_image.h"
 
 #include <bandvox/core/error.h>
-#include <bandvox/core/memory.h>
-#include <bandvox/grid/density_grid.h>
-#include <bandvox/reconstruct/brick_reconstruction.h>
+#include <bandvox/reconstruct/reconstruction.h>
 #include <bandvox/render/density_to_image.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <memory>
-#include <sstream>
-#include <string>
 #include <vector>
 
 namespace bandvox {
 
 namespace {
-
-// The eye cannot tell a finer reconstruction; a coarser one is no picture of the density.
-constexpr double kFinestTolerance = 1e-4;
-constexpr double kCoarsestTolerance = 0.1;
-
-// Of solids under a filter that does not ring a flat face is the steepest; others come close.
-constexpr double kSteepestMargin = 1.5;
 
 // Gradients below this part of a flat face's have no direction worth showing.
 constexpr double kFlatGradient = 1e-4;
@@ -90,55 +79,6 @@ class Scene {
     Lighting mLighting;
 };
 
-// What the density of a grid of this library may be off by.
-double densityError(const DensityMetadata& metadata) {
-    constexpr double kOfSampling = 0.05;  // where it was not measured
-    const double ofSampling =
-        std::isnan(metadata.samplingError) ? kOfSampling : metadata.samplingError;
-    return std::max(ClearDistance::kDensityError,
-                    metadata.tolerance + ofSampling + metadata.storageError);
-}
-
-// How far lines of sight may step. Solids under the default filter have a sharp bound; others,
-// and what was not made by this library, are taken to be about as steep as a flat face.
-ClearDistance clearDistance(const openvdb::FloatGrid& grid,
-                            const std::optional<DensityMetadata>& metadata, double maximum,
-                            double iso, double faceSlope) {
-    constexpr double kRounding = 1e-2;
-    const double background = grid.background();
-    const double error = metadata ? densityError(*metadata) : ClearDistance::kDensityError;
-    // Overlapping shells that were limited to 1 are no solid's density.
-    if (metadata && metadata->order == 2 && !metadata->clamped && background == 0 &&
-        maximum < 1 + kRounding && iso < 1) {
-        return ClearDistance::ofGaussian(iso, metadata->cutoff, error);
-    }
-    const double range = std::max(1.0, maximum - background);
-    return ClearDistance::ofSlope(iso, background, kSteepestMargin * faceSlope * range, error);
-}
-
-// Memory for the reconstruction's bricks: what most pictures need, if the machine has it.
-std::size_t cacheBytes() {
-    constexpr std::int64_t kLeast = std::int64_t(64) << 20, kMost = std::int64_t(2) << 30;
-    return static_cast<std::size_t>(std::clamp(availableMemory() / 4, kLeast, kMost));
-}
-
-// Sharp filters keep more than can be read between the nodes to the finest tolerance: then read
-// them as well as can be.
-std::unique_ptr<Reconstruction> readLattice(const openvdb::FloatGrid::ConstPtr& grid,
-                                            const ExponentialFilter& filter, double tolerance) {
-    BrickReconstructionOptions options{filter, tolerance, cacheBytes()};
-    for (;; options.tolerance *= 3) {
-        try {
-            options.tolerance = std::min(options.tolerance, kCoarsestTolerance);
-            return makeBrickReconstruction(grid, options);
-        } catch (const Error& error) {
-            if (options.tolerance < kCoarsestTolerance) continue;
-            throw Error(ErrorKind::Input,
-                        "the grid \"" + grid->getName() + "\" cannot be read: " + error.what());
-        }
-    }
-}
-
 // Draws all pixels. Returns how many lines of sight hit.
 std::int64_t drawTiles(const Scene& scene, const Reconstruction& reconstruction, Image& image,
                        Progress& progress) {
@@ -162,34 +102,26 @@ RenderResult densityToImage(const openvdb::FloatGrid::ConstPtr& grid, const Rend
     // Refuse what cannot be drawn.
     requireValid(options);
     if (!grid) throw Error(ErrorKind::Input, "a picture needs a density grid, but got none");
-    requireDensity(*grid);
-    const std::optional<DensityMetadata> metadata = densityMetadata(*grid);
-    const double iso = isoOf(*grid, metadata, options);
-    const Camera camera(options.camera, options.width, options.height, worldBox(*grid));
+    const DrawableGrid drawable = makeDrawable(grid, options);
+    const openvdb::FloatGrid& field = *drawable.grid;
+    const double iso = drawable.iso;
+    const Camera camera(options.camera, options.width, options.height, worldBox(field));
     if (options.shading != Shading::Spectral) {
-        return voxelsToImage({*grid, iso, camera, options}, progress);
+        return voxelsToImage({field, iso, camera, options}, progress);
     }
 
-    // Read the lattice by the filter that it was made with.
-    const auto filter =
-        metadata ? ExponentialFilter{metadata->order, metadata->cutoff} : ExponentialFilter();
-    const auto reconstruction =
-        readLattice(grid, filter, std::max(metadata ? metadata->tolerance : 0, kFinestTolerance));
-
-    // Find where the surface can be. Between the nodes of the lattice the density can rise above
-    // them: a Gaussian's by no more than its slope times half a voxel's diagonal, 0.24, and others
-    // not much further; half the height is on the safe side.
-    const double slope = faceGradient(filter);
-    const SurfaceBlocks blocks(*grid, 0.5 * (iso + grid->background()));
-    if (!blocks.finite()) failNotFinite(*grid);
+    // Find where the surface can be, and read the lattice there.
+    const SurfaceBlocks blocks(field, surfaceThreshold(drawable));
+    if (!blocks.finite()) failNotFinite(field);
     if (blocks.empty()) failEmpty(blocks.maximum(), iso);
-    const RayMarch march(blocks, iso, clearDistance(*grid, metadata, blocks.maximum(), iso, slope));
+    const SurfaceField surface = readSurface(drawable, blocks.maximum());
+    const RayMarch march(blocks, iso, surface.clear);
 
     // Draw.
     RenderResult result;
-    result.image = blankImage(options, iso, *grid);
-    const Scene scene(*grid, options, camera, march, slope);
-    result.hits = drawTiles(scene, *reconstruction, result.image, progress);
+    result.image = blankImage(options, drawable.isLevelSet ? -iso : iso, *grid);
+    const Scene scene(field, options, camera, march, surface.slope);
+    result.hits = drawTiles(scene, *surface.reconstruction, result.image, progress);
     result.rays = std::int64_t(options.width) * options.height * options.samples;
     requireHits(result, blocks.maximum(), iso);
     return result;

@@ -49,21 +49,16 @@ void requireValid(const RenderOptions& options) {
     }
 }
 
-void requireDensity(const openvdb::FloatGrid& grid) {
+void requireDrawable(const openvdb::FloatGrid& grid) {
     const std::string name = "the grid \"" + grid.getName() + "\" ";
-    if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) {
-        throw Error(ErrorKind::Input,
-                    name +
-                        "is a level set (signed distances); expected a density: convert it "
-                        "first, with OpenVDB's sdfToFogVolume");
-    }
     if (!grid.transform().isLinear()) {
         throw Error(ErrorKind::Input, name + "has a transform of type " +
                                           grid.transform().mapType() +
                                           ", which bends lines of sight; expected a linear one");
     }
     if (grid.evalActiveVoxelBoundingBox().empty()) {
-        throw Error(ErrorKind::Input, name + "has no active voxel; expected a density");
+        throw Error(ErrorKind::Input,
+                    name + "has no active voxel; expected a density or a level set");
     }
     if (!std::isfinite(grid.background())) failNotFinite(grid);
 }

@@ -9,8 +9,8 @@
 
 namespace bandvox {
 
-/// Throws Error(ErrorKind::Input) unless `grid` is a density that can be drawn.
-void requireDensity(const openvdb::FloatGrid& grid);
+/// Throws Error(ErrorKind::Input) unless `grid` is one that can be drawn.
+void requireDrawable(const openvdb::FloatGrid& grid);
 
 /// Throws Error(ErrorKind::Input), for a grid that has values that are not finite.
 [[noreturn]] void failNotFinite(const openvdb::FloatGrid& grid);
