@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <vector>
 
 namespace bandvox {
 
@@ -67,33 +68,46 @@ openvdb::Vec3d directionRight(const CameraOptions& options, const openvdb::Vec3d
     return right.unit();
 }
 
-// The corners of a box relative to `center`, along the camera's axes: right, up, forward.
-std::array<openvdb::Vec3d, 8> cornersFrom(const openvdb::Vec3d& center, const Camera& camera,
-                                          const openvdb::BBoxd& box) {
+std::array<openvdb::Vec3d, 8> cornersOf(const openvdb::BBoxd& box) {
     std::array<openvdb::Vec3d, 8> corners;
     for (int i = 0; i < 8; ++i) {
-        const openvdb::Vec3d corner(i & 1 ? box.max()[0] : box.min()[0],
-                                    i & 2 ? box.max()[1] : box.min()[1],
-                                    i & 4 ? box.max()[2] : box.min()[2]);
-        const openvdb::Vec3d offset = corner - center;
-        corners[i] = {offset.dot(camera.right()), offset.dot(camera.upward()),
-                      offset.dot(camera.forward())};
+        corners[i] = {i & 1 ? box.max()[0] : box.min()[0], i & 2 ? box.max()[1] : box.min()[1],
+                      i & 4 ? box.max()[2] : box.min()[2]};
     }
     return corners;
 }
 
-// What the corners take up along one axis of the picture, on the plane through their center.
+openvdb::Vec3d middleOf(std::span<const openvdb::Vec3d> points) {
+    openvdb::BBoxd box;
+    for (const openvdb::Vec3d& p : points) box.expand(p);
+    return box.getCenter();
+}
+
+// Points relative to `center`, along the camera's axes: right, up, forward.
+std::vector<openvdb::Vec3d> seenFrom(const openvdb::Vec3d& center, const Camera& camera,
+                                     std::span<const openvdb::Vec3d> points) {
+    std::vector<openvdb::Vec3d> seen;
+    seen.reserve(points.size());
+    for (const openvdb::Vec3d& point : points) {
+        const openvdb::Vec3d offset = point - center;
+        seen.emplace_back(offset.dot(camera.right()), offset.dot(camera.upward()),
+                          offset.dot(camera.forward()));
+    }
+    return seen;
+}
+
+// What points take up along one axis of the picture, on the plane through their center.
 struct Fit {
     double middle, reach;
 };
 
-// A corner c at forward distance d is seen by an eye at distance D if |c - middle| ≤ t (D + d),
+// A point c at forward distance d is seen by an eye at distance D if |c - middle| ≤ t (D + d),
 // t = `tangent`; then reach = t D. For t = 0, orthographic, it is half the width.
-Fit fit(const std::array<openvdb::Vec3d, 8>& corners, int axis, double tangent, bool centered) {
+Fit fit(std::span<const openvdb::Vec3d> points, int axis, double tangent, bool centered) {
     double high = -std::numeric_limits<double>::infinity(), low = -high;
-    for (const openvdb::Vec3d& corner : corners) {
-        high = std::max(high, corner[axis] - tangent * corner[2]);
-        low = std::min(low, corner[axis] + tangent * corner[2]);
+    for (const openvdb::Vec3d& point : points) {
+        high = std::max(high, point[axis] - tangent * point[2]);
+        low = std::min(low, point[axis] + tangent * point[2]);
     }
     if (centered) return {0.5 * (high + low), 0.5 * (high - low)};
     return {0, std::max(high, -low)};
@@ -120,6 +134,10 @@ void requireValid(const CameraOptions& options) {
 }
 
 Camera::Camera(const CameraOptions& options, int width, int height, const openvdb::BBoxd& object)
+    : Camera(options, width, height, cornersOf(object)) {}
+
+Camera::Camera(const CameraOptions& options, int width, int height,
+               std::span<const openvdb::Vec3d> object)
     : mProjection(options.projection), mPixelsWide(width), mPixelsHigh(height) {
     // Refuse what defines no view.
     const bool perspective = mProjection == CameraOptions::Projection::Perspective;
@@ -129,7 +147,7 @@ Camera::Camera(const CameraOptions& options, int width, int height, const openvd
     requireValid(options);
 
     // Turn the axes.
-    const openvdb::Vec3d lookat = options.lookat.value_or(object.getCenter());
+    const openvdb::Vec3d lookat = options.lookat.value_or(middleOf(object));
     const openvdb::Vec3d back = directionBack(options, lookat);
     mForward = -back;
     mRight = directionRight(options, back);
@@ -138,19 +156,19 @@ Camera::Camera(const CameraOptions& options, int width, int height, const openvd
     // Frame the object, around the lookat if that was given, else in the middle of the picture.
     const double aspect = mPixelsHigh / mPixelsWide;
     const bool centered = !options.eye && !options.lookat;
-    const auto corners = cornersFrom(lookat, *this, object);
+    const std::vector<openvdb::Vec3d> points = seenFrom(lookat, *this, object);
     if (perspective) mHalfWidth = 0.5 * options.aperture / options.focal;
     const double tangent = perspective ? mHalfWidth / kFrameMargin : 0;
-    const Fit across = fit(corners, 0, tangent, centered);
-    const Fit along = fit(corners, 1, tangent * aspect, centered);
+    const Fit across = fit(points, 0, tangent, centered);
+    const Fit along = fit(points, 1, tangent * aspect, centered);
     double distance = 0;
     if (perspective) {
         distance = std::max(across.reach / tangent, along.reach / (tangent * aspect));
     } else {
         const double fitted = std::max(across.reach, along.reach / aspect);
         mHalfWidth = options.frame > 0 ? 0.5 * options.frame : kFrameMargin * fitted;
-        for (const openvdb::Vec3d& corner : corners) {
-            distance = std::max(distance, fitted - corner[2]);
+        for (const openvdb::Vec3d& point : points) {
+            distance = std::max(distance, fitted - point[2]);
         }
     }
     mHalfHeight = mHalfWidth * aspect;

@@ -105,7 +105,8 @@ RenderResult densityToImage(const openvdb::FloatGrid::ConstPtr& grid, const Rend
     const DrawableGrid drawable = makeDrawable(grid, options);
     const openvdb::FloatGrid& field = *drawable.grid;
     const double iso = drawable.iso;
-    const Camera camera(options.camera, options.width, options.height, worldBox(field));
+    worldBox(field);  // refuses what is not finite
+    const Camera camera(options.camera, options.width, options.height, activePoints(field));
     if (options.shading != Shading::Spectral) {
         return voxelsToImage({field, iso, camera, options}, progress);
     }

@@ -76,6 +76,30 @@ double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata
     return iso;
 }
 
+std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid) {
+    std::vector<openvdb::Vec3d> points;
+    const auto add = [&](const openvdb::CoordBBox& voxels) {
+        if (voxels.empty()) return;
+        for (int i = 0; i < 8; ++i) {
+            openvdb::Vec3d corner;
+            for (int axis = 0; axis < 3; ++axis) {
+                corner[axis] =
+                    (i >> axis & 1) != 0 ? voxels.max()[axis] + 0.5 : voxels.min()[axis] - 0.5;
+            }
+            points.push_back(grid.indexToWorld(corner));
+        }
+    };
+    for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
+        openvdb::CoordBBox box;
+        leaf->evalActiveBoundingBox(box);
+        add(box);
+    }
+    auto tile = grid.cbeginValueOn();
+    tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
+    for (; tile; ++tile) add(tile.getBoundingBox());
+    return points;
+}
+
 openvdb::BBoxd worldBox(const openvdb::FloatGrid& grid) {
     const openvdb::CoordBBox voxels = grid.evalActiveVoxelBoundingBox();
     const openvdb::BBoxd index(voxels.min().asVec3d() - openvdb::Vec3d(0.5),

@@ -6,6 +6,7 @@
 #include <openvdb/math/BBox.h>
 
 #include <optional>
+#include <vector>
 
 namespace bandvox {
 
@@ -22,6 +23,9 @@ double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata
 
 /// The box of the active voxels, world units. Throws Error(ErrorKind::Input) if it is not finite.
 openvdb::BBoxd worldBox(const openvdb::FloatGrid& grid);
+
+/// The corners of what is active, node by node, world units: points to frame in a picture.
+std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid);
 
 /// Throws Error(ErrorKind::Result), for a grid whose values reach no more than `maximum`.
 [[noreturn]] void failEmpty(double maximum, double iso);

@@ -4,6 +4,7 @@
 #include <openvdb/math/BBox.h>
 
 #include <optional>
+#include <span>
 
 namespace bandvox {
 
@@ -36,6 +37,12 @@ class Camera {
     /// `object` is the box to frame, world units, not empty.
     /// Throws Error(ErrorKind::Usage) if the options do not define a view of it.
     Camera(const CameraOptions& options, int width, int height, const openvdb::BBoxd& object);
+
+    /// The same with the points to frame, world units, at least one: what is seen of an object
+    /// fills the picture better than what is seen of its box. What is looked at by default is the
+    /// middle of their box.
+    Camera(const CameraOptions& options, int width, int height,
+           std::span<const openvdb::Vec3d> object);
 
     /// The line of sight through a place of the picture, in pixels from its top left corner.
     Ray ray(double x, double y) const;
