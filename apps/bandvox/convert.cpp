@@ -63,7 +63,9 @@ void readRoute(const CommandLine& line, ConvertRequest& request) {
     }
     const bool isSampling = request.route == Route::Sampled || request.route == Route::Winding;
     if (line.has("oversample")) {
-        if (!isSampling) {
+        // What of a mesh goes by its winding number is not known yet.
+        const bool mayBeUsed = request.route == Route::Auto && !isShape(request.input);
+        if (!isSampling && !mayBeUsed) {
             throw Error(ErrorKind::Usage,
                         "--oversample is for the sampled route and that of the winding number; "
                         "expected --route sampled or --route winding with it");
@@ -129,7 +131,8 @@ std::string errorInWords(const ConvertRequest& request, const DensityResult& res
         words = "not known, since an odd number of samples cannot be halved";
     } else {
         words = formatNumber(metadata.samplingError, 2) +
-                " measured by halving the samples, tolerance " +
+                (metadata.route == "sampled" ? " measured by halving the samples, tolerance "
+                                             : " measured with every fourth row, tolerance ") +
                 formatNumber(samplingTolerance(request, result), 2);
     }
     if (request.write.half) {
@@ -188,9 +191,14 @@ DensityResult meshToDensity(CommandRun& run, const ConvertRequest& request) {
     if (mesh.soup.triangles.empty()) {
         const MeshSource source(mesh.name, std::move(mesh.solid));
         result = surfaceToDensity(source, request.density, run.progress());
+        if (request.oversample) {
+            result.warnings.push_back(
+                "--oversample was not used: caps close the whole mesh, which took the exact route");
+        }
     } else {
         SoupDensityOptions options;
         options.density = request.density;
+        options.density.tolerance = std::min(options.density.tolerance, DensityOptions().tolerance);
         options.rowsPerVoxel = request.oversample.value_or(options.rowsPerVoxel);
         options.samplingTolerance = request.samplingTolerance.value_or(options.samplingTolerance);
         result = soupToDensity({mesh.name, std::move(mesh.soup), std::move(mesh.solid)}, options,
@@ -237,12 +245,11 @@ void requireTolerance(const ConvertRequest& request, const DensityResult& result
     }
     if (error <= asked) return;
     const bool isSampled = request.route == Route::Sampled;
-    throw Error(ErrorKind::Result,
-                "the sampling error of " + formatNumber(error, 2) +
-                    " is above the tolerance asked for, " + formatNumber(asked, 2) +
-                    "; take more samples (" +
-                    (isSampled ? "--oversample), or the exact route"
-                               : "--route winding --oversample), or a mesh that is closed"));
+    throw Error(ErrorKind::Result, "the sampling error of " + formatNumber(error, 2) +
+                                       " is above the tolerance asked for, " +
+                                       formatNumber(asked, 2) + "; take more samples (" +
+                                       (isSampled ? "--oversample), or the exact route"
+                                                  : "--oversample), or a mesh that is closed"));
 }
 
 }  // namespace
@@ -286,8 +293,9 @@ const CommandTable& convertTable() {
                 {"oversample", 0, "P",
                  std::to_string(FieldDensityOptions().oversample) + ", winding " +
                      std::to_string(SoupDensityOptions().rowsPerVoxel),
-                 "Samples along a voxel's side on the sampled route, or rows on that of the "
-                 "winding number, 1 to 64; an even number has its error measured.",
+                 "Samples along a voxel's side on the sampled route, whose error is measured if "
+                 "they are "
+                 "even, or rows on that of the winding number, 1 to 64.",
                  filter},
                 {"overlap", 0, "KIND", "union",
                  "Where shells of a mesh overlap. union: inside is inside. sum: densities add up, "

@@ -181,7 +181,7 @@ TEST_F(AnyMesh, WhatNoCapsCloseGoesByItsWindingNumber) {
     EXPECT_LT(box.samplingError, 0.05);
     EXPECT_NE(mErrors.find("6 pieces of 12 triangles are not closed"), std::string::npos)
         << mErrors;
-    EXPECT_NE(mErrors.find("measured by halving the samples"), std::string::npos) << mErrors;
+    EXPECT_NE(mErrors.find("measured with every fourth row"), std::string::npos) << mErrors;
     EXPECT_EQ(run({"convert", "a.obj", "-o", "b.vdb", "-r", "64", "--strict"}).status, 3);
     const RunResult finer =
         run({"convert", "a.obj", "-o", "b.vdb", "-r", "64", "--tolerance", "1e-3"});
@@ -226,7 +226,10 @@ TEST_F(AnyMesh, TheRouteCanBeAskedFor) {
     EXPECT_EQ(winding.route, "winding");
     EXPECT_EQ(winding.oversampling, 6);
     EXPECT_NEAR(winding.gridVolume, 8, 0.01);
-    EXPECT_EQ(run({"convert", "a.obj", "-o", "b.vdb", "--oversample", "4"}).status, 2);
+    const RunResult unused = run({"convert", "a.obj", "-o", "b.vdb", "--oversample", "4"});
+    EXPECT_EQ(unused.status, 0);
+    EXPECT_NE(unused.err.find("--oversample was not used"), std::string::npos) << unused.err;
+    EXPECT_EQ(mErrors.find("not closed"), std::string::npos) << mErrors;
     EXPECT_EQ(run({"convert", "a.obj", "-o", "b.vdb", "--route", "sampled"}).status, 2);
     EXPECT_EQ(run({"convert", "shape:cube", "-o", "b.vdb", "--route", "winding"}).status, 2);
 }

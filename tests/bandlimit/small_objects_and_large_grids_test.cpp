@@ -136,8 +136,11 @@ TEST(SmallObjects, VoxelsBelowOpenVdbsSmallestAreRefused) {
     options.voxelSize = 1e-20;
     EXPECT_EQ(kindOf(1e-19, options), ErrorKind::Usage);
     // A voxel that is only too small for the object takes more memory than there is.
-    options.voxelSize = 1e-12;
-    EXPECT_EQ(kindOf(1, options), ErrorKind::Memory);
+    options.voxelSize = 1.45e-5;
+    EXPECT_EQ(kindOf(10, options), ErrorKind::Memory);
+    EXPECT_EQ(kindOf(1e-3, options), ErrorKind::Runtime) << "it is made";
+    options.voxelSize = 1.44e-5;
+    EXPECT_EQ(kindOf(1e-3, options), ErrorKind::Usage);
 }
 
 }  // namespace

@@ -122,14 +122,64 @@ TEST(SeparateSoup, SheetsThatEncloseNothingAreNoSoup) {
     Mesh mesh = test::panels(0.02);
     mesh.triangles.resize(4);
     EXPECT_THROW(close(mesh), Error);
-    // Beside a soup they are left away.
+    // Beside a soup they add nothing to it.
     Mesh sheet = mesh;
     for (Vec3d& p : sheet.points) p += Vec3d(10, 0, 0);
     Mesh both = test::panels(0.02);
     test::append(both, sheet);
     const ClosedMesh closed = close(both);
-    EXPECT_EQ(closed.report.soupPieces, 6u);
+    EXPECT_GE(closed.report.soupPieces, 6u);
     EXPECT_TRUE(closed.mesh.triangles.empty());
+    // Beside a solid they are said to enclose nothing.
+    Mesh beside = test::cube(Vec3d(20, 0, 0), 2);
+    test::append(beside, mesh);
+    const ClosedMesh cube = close(beside);
+    EXPECT_EQ(cube.report.soupPieces, 0u);
+    EXPECT_EQ(cube.report.sheets, 2u);
+    EXPECT_NEAR(test::volume(cube.mesh), 8, 1e-9);
+}
+
+// So many openings that look the same way add up, far from all of them.
+TEST(SeparateSoup, ThousandsOfOpenBoxesAreCapped) {
+    Mesh mesh;
+    for (int i = 0; i < 1000; ++i) {
+        Mesh box = test::cube(1.5 * Vec3d(i % 10, i / 10 % 10, i / 100), 1);
+        box.triangles.resize(10);
+        test::append(mesh, box);
+    }
+    const ClosedMesh closed = close(mesh);
+    EXPECT_EQ(closed.report.soupPieces, 0u);
+    EXPECT_EQ(closed.report.holes.size(), 1000u);
+    EXPECT_NEAR(test::volume(closed.mesh), 1000, 1e-6);
+}
+
+TEST(SeparateSoup, DoesNotMindASolidBesideIt) {
+    // Outward or not, much larger or not.
+    for (const double side : {2.0, 40.0}) {
+        for (const bool isInsideOut : {false, true}) {
+            Mesh mesh = test::cube(Vec3d(3, -side / 2, -side / 2), side);
+            if (isInsideOut) mesh = test::reversed(mesh);
+            test::append(mesh, test::panels(0.02));
+            const ClosedMesh closed = close(mesh);
+            EXPECT_EQ(closed.report.soupPieces, 6u) << side << isInsideOut;
+            EXPECT_NEAR(test::volume(closed.mesh), side * side * side, 1e-6 * side);
+            EXPECT_NEAR(WindingNumber(closed.soup).exactAt(Vec3d(0.1)), 1, 0.1);
+        }
+    }
+}
+
+TEST(SeparateSoup, WhatIsLeftOfABallIsStillABall) {
+    const Mesh ball = test::sphere(Vec3d(0.0), 1, 24, 48);
+    for (const double part : {0.3, 0.35, 0.4, 0.45}) {
+        const ClosedMesh closed = close(test::thinned(ball, part, 17));
+        // Whether or not the largest piece can be capped, what is inside stays inside.
+        const double inside = WindingNumber(closed.soup).exactAt(Vec3d(0.05)) +
+                              WindingNumber(closed.mesh).exactAt(Vec3d(0.05));
+        EXPECT_GT(inside, 0.51) << part;
+        if (part > 0.38) {
+            EXPECT_GT(closed.report.soupTriangles, ball.triangles.size() / 3) << part;
+        }
+    }
 }
 
 TEST(SeparateSoup, AllOrNothingCanBeAskedFor) {

@@ -109,5 +109,20 @@ TEST(StitchCracks, SlitsAreClosed) {
     EXPECT_NEAR(test::volume(closed.mesh), test::volume(sphere), 2e-3);
 }
 
+// What is a crack does not depend on how far away other things are.
+TEST(StitchCracks, LeavesSmallThingsInAWideSceneAlone) {
+    Mesh mesh = test::sphere(Vec3d(0.0), 1, 20, 30);
+    mesh.triangles.resize(mesh.triangles.size() - 100);
+    const std::size_t triangles = mesh.triangles.size();
+    Mesh far = mesh;
+    for (Vec3d& p : far.points) p += Vec3d(5000, 0, 0);
+    test::append(mesh, far);
+    const ClosedMesh closed = closeMesh(mesh);
+    EXPECT_EQ(closed.report.crackPoints, 0u);
+    EXPECT_EQ(closed.report.edgesSplit, 0u);
+    EXPECT_EQ(closed.report.nonManifoldEdges, 0u);
+    EXPECT_GT(closed.mesh.triangles.size(), 2 * triangles);
+}
+
 }  // namespace
 }  // namespace bandvox

@@ -1,6 +1,7 @@
 #include "bandlimit/density_steps.h"
 
 #include "bandlimit/grid_assembly.h"
+#include "core/smallest_voxel.h"
 #include "core/words.h"
 
 #include <bandvox/core/error.h>
@@ -17,8 +18,7 @@ constexpr double kLowestTolerance = 1e-6;
 constexpr double kHighestTolerance = 0.05;
 constexpr int kHighestResolution = 1 << 20;
 constexpr int kLargestTile = 512;
-constexpr double kLargestVoxel = 1e60;    // world units; the volumes of many are still finite
-constexpr double kSmallestVoxel = 1e-14;  // world units; a scale below 1e-15 is 0 to OpenVDB
+constexpr double kLargestVoxel = 1e60;  // world units; the volumes of many are still finite
 
 }  // namespace
 

@@ -46,8 +46,9 @@ DensityResult soupToDensity(const SoupOfTriangles& triangles, const SoupDensityO
     density.voxelSize = chooseVoxelSize(triangles.name, bounds, options.density);
 
     // Follow the soup's rows, and filter what they and the solid's surface give.
+    const Mesh* beside = density.sumOverlaps ? nullptr : &triangles.solid;
     const SoupSource soup(triangles.name, triangles.soup,
-                          {density.voxelSize, options.rowsPerVoxel, &triangles.solid}, progress);
+                          {density.voxelSize, options.rowsPerVoxel, beside}, progress);
     std::optional<MeshSource> solid;
     if (!triangles.solid.triangles.empty()) solid.emplace(triangles.name, triangles.solid);
     const auto convert = [&](const SoupSource& rows) {

@@ -28,8 +28,8 @@ constexpr float kThinnest = 0.02F;
 constexpr double kPrecision = 0.01;
 constexpr int kMostSteps = 12;
 
-// A cell is smooth if the winding number, whole numbers apart, stays within this and as far
-// away from what is inside.
+// A cell is smooth if the winding number, whole numbers apart, changes by less than the first in
+// it, and stays as far away from what is inside as the second.
 constexpr double kSmooth = 0.2;
 constexpr double kMarginOfSmooth = 0.03;
 

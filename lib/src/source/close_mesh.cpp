@@ -161,7 +161,7 @@ void requireNoProblem(const CloseMeshOptions& options, const CloseMeshReport& re
     }
 }
 
-void describe(const MeshComponents& components, const TurnedComponents& turned,
+void describe(const MeshComponents& components, const TurnedComponents& turned, Capping capping,
               CloseMeshReport& report) {
     const auto warn = [&report](const std::string& text) { report.warnings.push_back(text); };
     if (report.duplicateTriangles > 0) {
@@ -187,7 +187,11 @@ void describe(const MeshComponents& components, const TurnedComponents& turned,
              " disagreed with the neighbours about what is outside and " +
              (components.trianglesFlipped == 1 ? "was" : "were") + " flipped");
     }
-    if (report.soupPieces > 0) {
+    if (report.sheets > 0) {
+        warn(counted(report.sheets, "piece is a sheet", "pieces are sheets") +
+             " that enclose hardly anything, alone or with others");
+    }
+    if (report.soupPieces > 0 && capping != Capping::None) {
         warn(counted(report.soupPieces, "piece", "pieces") + " of " +
              counted(report.soupTriangles, "triangle", "triangles") + " " +
              (report.soupPieces == 1 ? "is" : "are") +
@@ -253,6 +257,7 @@ ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progr
                                   : SeparatedSoup();
     report.soupPieces = separated.pieces;
     report.soupTriangles = separated.soup.triangles.size();
+    report.sheets = separated.sheets;
     report.holes = holesOfSolids(holes, separated.isSoup);
     closed.soup = std::move(separated.soup);
     advance();
@@ -269,7 +274,7 @@ ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progr
         mesh = {};
     }
     requireNoProblem(options, report);
-    describe(components, turned, report);
+    describe(components, turned, options.capping, report);
     advance();
     closed.mesh = std::move(mesh);
     return closed;

@@ -1,6 +1,7 @@
 #include "source/separate_soup.h"
 
 #include "source/orient_by_rays.h"
+#include "source/turn_outward.h"
 #include "source/weld_points.h"
 
 #include <bandvox/source/winding_number.h>
@@ -19,18 +20,26 @@ using openvdb::BBoxd;
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
-// Caps of less than this part of the mesh's area are not looked at.
-constexpr double kLeastCaps = 0.01;
+// A piece may be soup by itself if its caps are this large beside its own area; others, whose caps
+// are this large, if soup lies where their caps are. Pieces of less than this part of the mesh's
+// area altogether are not looked at.
+constexpr double kLargeCaps = 0.4;
+constexpr double kLeastCaps = 0.02;
+constexpr double kLeastArea = 1e-4;
 
 // So many caps of a piece, the largest, and so many pieces are looked at.
 constexpr std::size_t kCapsOfPiece = 8;
 constexpr std::size_t kMostPieces = 1000;
+
+// How often it is looked again which of them are soup, the others being capped.
+constexpr int kRoundsOfJudging = 3;
 
 // The winding number is clear if it is this far from 0.5.
 constexpr double kClearWinding = 0.25;
 
 // A piece is soup if this part of its caps' area is wrong.
 constexpr double kMostWrong = 0.25;
+constexpr double kMostWrongOfFlat = 0.05;  // of the flat pieces' area
 
 // A piece whose volume, relative to its area, is at least this tells what its outside is.
 constexpr double kRound = 0.02;
@@ -43,7 +52,8 @@ struct OpenPiece {
     double area = 0;    // without caps
     double volume = 0;  // caps included
     double capArea = 0;
-    std::vector<std::uint32_t> caps;  // the largest first
+    std::vector<std::uint32_t> allCaps;
+    std::vector<std::uint32_t> caps;  // the largest of them first
 
     bool isRound() const { return std::abs(volume) > kRound * std::pow(area + capArea, 1.5); }
 };
@@ -65,9 +75,10 @@ std::vector<OpenPiece> measure(const Mesh& mesh, const MeshComponents& component
         if (!origin[c]) origin[c] = corner;
         piece.volume += (corner - *origin[c]).dot(area) / 3;
         (i < firstCap ? piece.area : piece.capArea) += area.length();
-        if (i >= firstCap) piece.caps.push_back(i);
+        if (i >= firstCap) piece.allCaps.push_back(i);
     }
     for (OpenPiece& piece : pieces) {
+        piece.caps = piece.allCaps;
         const std::size_t kept = std::min(piece.caps.size(), kCapsOfPiece);
         std::partial_sort(piece.caps.begin(),
                           piece.caps.begin() + static_cast<std::ptrdiff_t>(kept), piece.caps.end(),
@@ -86,32 +97,49 @@ BBoxd boxOf(const Mesh& mesh) {
     return box;
 }
 
-// True if most of the surface without its caps looks towards the middle.
-bool facesInward(const Mesh& mesh, std::size_t firstCap) {
-    const Vec3d middle = boxOf(mesh).getCenter();
-    double outward = 0;
-    for (std::size_t i = 0; i < firstCap; ++i) {
-        const Vec3I& t = mesh.triangles[i];
-        outward += areaVector(mesh, t).dot(mesh.points[t[0]] - middle);
+// Those of the caps whose pieces are wanted, as a mesh.
+Mesh capsOf(const Mesh& mesh, const std::vector<std::uint32_t>& pieceOf, std::size_t firstCap,
+            const std::vector<char>& isWanted) {
+    Mesh result;
+    result.points = mesh.points;
+    for (std::size_t i = firstCap; i < mesh.triangles.size(); ++i) {
+        if (isWanted[pieceOf[i]] != 0) result.triangles.push_back(mesh.triangles[i]);
     }
-    return outward < 0;
+    removeUnusedPoints(result);
+    return result;
 }
 
-// Compares what the caps say with what the surface without them does.
+// Compares what a piece's caps say with what the surface without them does, while only those of
+// some others are missing as well. Caps far away that are right thus do not count: thousands of
+// them add up to something.
 class CapJudge {
   public:
-    CapJudge(const Mesh& mesh, std::size_t firstCap)
+    CapJudge(const Mesh& mesh, const std::vector<std::uint32_t>& pieceOf, std::size_t firstCap,
+             std::size_t pieceCount)
         : mMesh(mesh),
-          mOpen(part(mesh, 0, firstCap)),
-          mCaps(part(mesh, firstCap, mesh.triangles.size())) {
-        mAside = kAsideOfMesh * boxOf(mesh).extents().length();
-        mSign = facesInward(mesh, firstCap) ? -1 : 1;
+          mPieceOf(pieceOf),
+          mFirstCap(firstCap),
+          mClosed(mesh),
+          mAside(kAsideOfMesh * boxOf(mesh).extents().length()) {
+        setOpen(std::vector<char>(pieceCount, 0));
     }
 
-    bool isInsideOut() const { return mSign < 0; }
+    // Leaves the caps of these pieces out.
+    void setOpen(std::vector<char> isOpen) {
+        mIsOpen = std::move(isOpen);
+        mOpenCaps.emplace(capsOf(mMesh, mPieceOf, mFirstCap, mIsOpen));
+    }
 
-    // The part of a piece's caps, by area, that is wrong.
-    double wrongPart(const OpenPiece& piece) const {
+    bool isWrong(const OpenPiece& piece, std::uint32_t number) const {
+        std::optional<WindingNumber> own;
+        if (mIsOpen[number] == 0) {
+            Mesh caps;
+            caps.points = mMesh.points;
+            for (const std::uint32_t cap : piece.allCaps) {
+                caps.triangles.push_back(mMesh.triangles[cap]);
+            }
+            own.emplace(std::move(caps));
+        }
         double wrong = 0, all = 0;
         for (const std::uint32_t cap : piece.caps) {
             const Vec3I& t = mMesh.triangles[cap];
@@ -122,69 +150,123 @@ class CapJudge {
             const Vec3d middle =
                 (mMesh.points[t[0]] + mMesh.points[t[1]] + mMesh.points[t[2]]) / 3.0;
             const Vec3d aside = std::min(mAside, kAsideOfCap * std::sqrt(size)) / size * area;
-            if (isWrong(middle + aside) || isWrong(middle - aside)) wrong += size;
+            if (isWrongAt(middle + aside, own) || isWrongAt(middle - aside, own)) wrong += size;
         }
-        return all > 0 ? wrong / all : 0;
+        return wrong > kMostWrong * all;
     }
 
   private:
-    static Mesh part(const Mesh& mesh, std::size_t begin, std::size_t end) {
-        Mesh result;
-        result.points = mesh.points;
-        result.triangles.assign(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(begin),
-                                mesh.triangles.begin() + static_cast<std::ptrdiff_t>(end));
-        removeUnusedPoints(result);
-        return result;
-    }
-
-    // True if the place is clearly inside by the surface alone and outside with the caps, or the
-    // other way round.
-    bool isWrong(const Vec3d& place) const {
-        const double open = mOpen.at(place);
-        if (std::abs(mSign * open - 0.5) < kClearWinding) return false;
-        const double capped = open + mCaps.at(place);
-        return (mSign * open > 0.5) != (std::abs(capped) > 0.5);
+    // True if the place is clearly inside without the caps and outside with them, or the other way
+    // round.
+    bool isWrongAt(const Vec3d& place, const std::optional<WindingNumber>& own) const {
+        const double closed = std::round(mClosed.at(place));
+        const double open = closed - mOpenCaps->at(place) - (own ? own->at(place) : 0);
+        if (std::abs(open - 0.5) < kClearWinding) return false;
+        return (open > 0.5) != (closed > 0.5);
     }
 
     const Mesh& mMesh;
-    WindingNumber mOpen, mCaps;
-    double mAside = 0;
-    int mSign = 1;
+    const std::vector<std::uint32_t>& mPieceOf;
+    std::size_t mFirstCap;
+    WindingNumber mClosed;
+    double mAside;
+    std::vector<char> mIsOpen;
+    std::optional<WindingNumber> mOpenCaps;
 };
 
-// Which pieces are soup.
-std::vector<char> judge(const std::vector<OpenPiece>& pieces, const CapJudge& caps) {
-    std::vector<std::size_t> open;
-    for (std::size_t c = 0; c < pieces.size(); ++c) {
-        if (!pieces[c].caps.empty()) open.push_back(c);
+// The part, by area, of some pieces whose caps are wrong.
+class Vote {
+  public:
+    void add(double area, bool isWrong) {
+        mAll += area;
+        if (isWrong) mWrong += area;
     }
-    std::vector<char> isSoup(pieces.size(), 0);
-    const std::size_t step = (open.size() + kMostPieces - 1) / kMostPieces;
-    double wrongArea = 0, lookedAt = 0;
-    for (std::size_t i = 0; i < open.size(); i += step) {
-        const OpenPiece& piece = pieces[open[i]];
-        isSoup[open[i]] = caps.wrongPart(piece) > kMostWrong ? 1 : 0;
-        lookedAt += piece.capArea;
-        if (isSoup[open[i]] != 0) wrongArea += piece.capArea;
+    double wrongPart() const { return mAll > 0 ? mWrong / mAll : 0; }
+
+  private:
+    double mAll = 0, mWrong = 0;
+};
+
+// Of the pieces that may be soup those that are, the others being capped.
+std::vector<char> judge(const std::vector<OpenPiece>& pieces, std::vector<char> mayBe,
+                        CapJudge& caps) {
+    for (int round = 0; round < kRoundsOfJudging; ++round) {
+        std::vector<std::uint32_t> some;
+        for (std::uint32_t c = 0; c < pieces.size(); ++c) {
+            if (mayBe[c] != 0) some.push_back(c);
+        }
+        if (some.empty()) break;
+        caps.setOpen(mayBe);
+        const std::size_t step = (some.size() + kMostPieces - 1) / kMostPieces;
+        std::vector<char> isSoup(pieces.size(), 0);
+        // Flat pieces enclose nothing if they are capped: they are soup together, if a part of them
+        // is.
+        Vote ofFlat, ofRound;
+        for (std::size_t i = 0; i < some.size(); i += step) {
+            const OpenPiece& piece = pieces[some[i]];
+            isSoup[some[i]] = caps.isWrong(piece, some[i]) ? 1 : 0;
+            (piece.isRound() ? ofRound : ofFlat).add(piece.area, isSoup[some[i]] != 0);
+        }
+        for (const std::uint32_t c : some) {
+            if (!pieces[c].isRound()) {
+                isSoup[c] = ofFlat.wrongPart() > kMostWrongOfFlat ? 1 : 0;
+            } else if (step > 1) {
+                isSoup[c] = ofRound.wrongPart() > kMostWrong ? 1 : 0;
+            }
+        }
+        if (isSoup == mayBe) break;
+        mayBe = std::move(isSoup);
     }
-    if (step <= 1) return isSoup;
-    const bool areMostSoup = wrongArea > kMostWrong * lookedAt;
-    for (const std::size_t c : open) isSoup[c] = areMostSoup ? 1 : 0;
-    return isSoup;
+    return mayBe;
 }
 
-// Splits a mesh. What a round piece encloses tells its outside; others face as they did, or the
-// other way.
+// Adds pieces whose caps soup contradicts.
+void addContradicted(const std::vector<OpenPiece>& pieces, CapJudge& caps,
+                     std::vector<char>& isSoup) {
+    if (std::count(isSoup.begin(), isSoup.end(), 1) == 0) return;
+    for (int round = 0; round < kRoundsOfJudging; ++round) {
+        caps.setOpen(isSoup);
+        std::vector<char> more = isSoup;
+        std::size_t lookedAt = 0;
+        for (std::uint32_t c = 0; c < pieces.size() && lookedAt < kMostPieces; ++c) {
+            const OpenPiece& piece = pieces[c];
+            if (isSoup[c] != 0 || piece.capArea < kLeastCaps * piece.area) continue;
+            ++lookedAt;
+            if (caps.isWrong(piece, c)) more[c] = 1;
+        }
+        if (more == isSoup) break;
+        isSoup = std::move(more);
+    }
+}
+
+// Turns open pieces outward: round ones by what they enclose, flat ones as rays say. Returns how
+// many triangles that were, without caps.
+std::size_t turnOpenPieces(Mesh& mesh, const MeshComponents& components, std::size_t firstCap,
+                           const std::vector<OpenPiece>& pieces) {
+    std::vector<char> isFlat(pieces.size(), 0);
+    std::size_t flipped = 0;
+    for (std::size_t c = 0; c < pieces.size(); ++c) {
+        isFlat[c] = !pieces[c].caps.empty() && !pieces[c].isRound() ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const OpenPiece& piece = pieces[components.ofTriangle[i]];
+        if (piece.caps.empty() || !piece.isRound() || piece.volume > 0) continue;
+        std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
+        if (i < firstCap) ++flipped;
+    }
+    return flipped + orientByRays(mesh, components.ofTriangle, isFlat, firstCap);
+}
+
+// Splits a mesh.
 SeparatedSoup split(Mesh& mesh, MeshComponents& components, std::size_t firstCap,
-                    const std::vector<OpenPiece>& pieces, std::vector<char> isSoup,
-                    bool isInsideOut) {
+                    std::vector<char> isSoup) {
     SeparatedSoup separated;
     separated.pieces = static_cast<std::size_t>(std::count(isSoup.begin(), isSoup.end(), 1));
     if (separated.pieces == 0) return separated;
     separated.soup.points = mesh.points;
-    std::vector<std::uint32_t> renumbered(pieces.size(), 0);
+    std::vector<std::uint32_t> renumbered(isSoup.size(), 0);
     std::uint32_t kept = 0;
-    for (std::size_t c = 0; c < pieces.size(); ++c) {
+    for (std::size_t c = 0; c < isSoup.size(); ++c) {
         renumbered[c] = kept;
         if (isSoup[c] == 0) ++kept;
     }
@@ -195,12 +277,11 @@ SeparatedSoup split(Mesh& mesh, MeshComponents& components, std::size_t firstCap
     std::vector<Vec3I> solid;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         const std::uint32_t c = components.ofTriangle[i];
-        Vec3I t = mesh.triangles[i];
+        const Vec3I& t = mesh.triangles[i];
         if (isSoup[c] == 0) {
             solid.push_back(t);
             rest.ofTriangle.push_back(renumbered[c]);
         } else if (i < firstCap) {
-            if (pieces[c].isRound() ? pieces[c].volume < 0 : isInsideOut) std::swap(t[1], t[2]);
             separated.soup.triangles.push_back(t);
         }
     }
@@ -216,36 +297,41 @@ SeparatedSoup split(Mesh& mesh, MeshComponents& components, std::size_t firstCap
 
 SeparatedSoup separateSoup(Mesh& mesh, MeshComponents& components, std::size_t firstCap) {
     if (firstCap == mesh.triangles.size()) return {};
-    std::vector<OpenPiece> pieces = measure(mesh, components, firstCap);
-    double area = 0, capArea = 0;
-    for (const OpenPiece& piece : pieces) {
-        area += piece.area;
-        capArea += piece.capArea;
-    }
-    if (capArea < kLeastCaps * area) return {};
-    // Turn flat pieces first, whose own shape does not tell what is outside.
-    std::size_t flipped = 0;
-    std::vector<char> isFlat(pieces.size(), 0);
-    double flatArea = 0;
+    const std::vector<OpenPiece> pieces = measure(mesh, components, firstCap);
+    std::vector<char> mayBe(pieces.size(), 0);
+    double area = 0, areaOfThese = 0;
     for (std::size_t c = 0; c < pieces.size(); ++c) {
-        if (pieces[c].caps.empty() || pieces[c].isRound()) continue;
-        isFlat[c] = 1;
-        flatArea += pieces[c].area;
+        area += pieces[c].area;
+        if (pieces[c].capArea < kLargeCaps * pieces[c].area || pieces[c].caps.empty()) continue;
+        mayBe[c] = 1;
+        areaOfThese += pieces[c].area;
     }
-    if (flatArea > kLeastCaps * area) {
-        flipped = orientByRays(mesh, components.ofTriangle, isFlat, firstCap);
-        if (flipped > 0) pieces = measure(mesh, components, firstCap);
+    if (areaOfThese <= kLeastArea * area) return {};
+    const std::size_t flipped = turnOpenPieces(mesh, components, firstCap, pieces);
+    CapJudge caps(mesh, components.ofTriangle, firstCap, pieces.size());
+    std::vector<char> isSoup = judge(pieces, std::move(mayBe), caps);
+    addContradicted(pieces, caps, isSoup);
+    std::size_t sheets = 0;
+    for (std::size_t c = 0; c < pieces.size(); ++c) {
+        const OpenPiece& piece = pieces[c];
+        const bool isSheet = piece.capArea >= kLargeCaps * piece.area && !piece.isRound();
+        if (isSoup[c] == 0 && !piece.caps.empty() && isSheet) ++sheets;
     }
-    const CapJudge caps(mesh, firstCap);
-    SeparatedSoup separated =
-        split(mesh, components, firstCap, pieces, judge(pieces, caps), caps.isInsideOut());
+    SeparatedSoup separated = split(mesh, components, firstCap, std::move(isSoup));
+    separated.sheets = sheets;
     separated.trianglesFlipped = flipped;
     return separated;
 }
 
 SeparatedSoup separateAll(Mesh& mesh, MeshComponents& components, std::size_t firstCap) {
-    return split(mesh, components, firstCap, measure(mesh, components, firstCap),
-                 std::vector<char>(components.count, 1), facesInward(mesh, firstCap));
+    // Closed pieces first, of which cavities stay what they are.
+    turnOutward(mesh, components);
+    const std::size_t flipped =
+        turnOpenPieces(mesh, components, firstCap, measure(mesh, components, firstCap));
+    SeparatedSoup separated =
+        split(mesh, components, firstCap, std::vector<char>(components.count, 1));
+    separated.trianglesFlipped = flipped;
+    return separated;
 }
 
 }  // namespace bandvox

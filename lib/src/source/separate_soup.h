@@ -14,6 +14,7 @@ struct SeparatedSoup {
     Mesh soup;  ///< their triangles, without caps, facing outward as far as they tell
     std::size_t pieces = 0;
     std::vector<char> isSoup;          ///< of each piece that there was; empty if none is
+    std::size_t sheets = 0;            ///< open pieces that enclose nothing, capped or not
     std::size_t trianglesFlipped = 0;  ///< of all, because rays said so
 };
 

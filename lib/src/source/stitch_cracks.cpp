@@ -16,6 +16,9 @@ namespace {
 
 using openvdb::Vec3d;
 
+// Cracks are narrow beside the edges along them: no wider than this part of most.
+constexpr double kWidestCrack = 0.1;
+
 // What is joined may bring more to lie on an edge.
 constexpr int kMostRounds = 4;
 
@@ -29,6 +32,19 @@ std::vector<std::uint32_t> boundaryEdges(const Mesh& mesh) {
     });
     std::sort(boundary.begin(), boundary.end());
     return boundary;
+}
+
+/// The length that half of the boundary's edges exceed.
+double usualLength(const Mesh& mesh, const std::vector<std::uint32_t>& boundary) {
+    const DirectedEdges edges(mesh);
+    std::vector<double> lengths;
+    lengths.reserve(boundary.size());
+    for (const std::uint32_t e : boundary) {
+        lengths.push_back((mesh.points[edges.to(e)] - mesh.points[edges.from(e)]).length());
+    }
+    const auto middle = lengths.begin() + std::ssize(lengths) / 2;
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    return *middle;
 }
 
 std::vector<std::uint32_t> pointsOf(const Mesh& mesh, const std::vector<std::uint32_t>& boundary) {
@@ -181,6 +197,9 @@ StitchedCracks stitchCracks(Mesh& mesh, double tolerance, Progress& progress) {
     for (int round = 0; round < kMostRounds; ++round) {
         std::vector<std::uint32_t> boundary = boundaryEdges(mesh);
         if (boundary.empty()) break;
+        if (round == 0) {
+            tolerance = std::min(tolerance, kWidestCrack * usualLength(mesh, boundary));
+        }
         const std::size_t joined = joinPoints(mesh, pointsOf(mesh, boundary), tolerance);
         if (joined > 0) boundary = boundaryEdges(mesh);
         const std::size_t split =

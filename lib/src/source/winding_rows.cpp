@@ -33,13 +33,13 @@ CellLattice cellsAround(const BBoxd& bounds, double voxelSize) {
 WindingRows::WindingRows(const WindingTree& tree, const BBoxd& bounds, const RowLattice& lattice,
                          Progress& progress)
     : mLattice(lattice),
-      mMap(cellsAround(bounds, lattice.voxelSize)),
-      mXOrigin(std::round(mMap.origin.x() / lattice.voxelSize)) {
+      mCells(cellsAround(bounds, lattice.voxelSize)),
+      mXOrigin(std::round(mCells.origin.x() / lattice.voxelSize)) {
     for (int axis = 0; axis < 3; ++axis) {
-        mFirstVoxel[axis] = static_cast<int>(std::round(mMap.origin[axis] / lattice.voxelSize));
+        mFirstVoxel[axis] = static_cast<int>(std::round(mCells.origin[axis] / lattice.voxelSize));
     }
-    const WindingMap map(tree, mMap, progress);
-    const std::int64_t count = std::int64_t(mMap.count.y()) * mMap.count.z();
+    const WindingMap map(tree, mCells, progress);
+    const std::int64_t count = std::int64_t(mCells.count.y()) * mCells.count.z();
     // A row enters and leaves an ordinary object about once.
     constexpr double kBytesPerRow = 3 * sizeof(float);
     requireMemory(static_cast<double>(count) * kSide * kSide * mLattice.rowCount() * kBytesPerRow,
@@ -49,9 +49,9 @@ WindingRows::WindingRows(const WindingTree& tree, const BBoxd& bounds, const Row
     const ProgressStage stage(progress, "rows", count);
     parallelFor(count, [&](std::int64_t i) {
         progress.throwIfInterrupted();
-        BundleMarch march(
-            tree, map, bounds, {mLattice, firstVoxel(i), mXOrigin},
-            Coord(0, static_cast<int>(i / mMap.count.z()), static_cast<int>(i % mMap.count.z())));
+        BundleMarch march(tree, map, bounds, {mLattice, firstVoxel(i), mXOrigin},
+                          Coord(0, static_cast<int>(i / mCells.count.z()),
+                                static_cast<int>(i % mCells.count.z())));
         march.run(mBundles[i].start, mBundles[i].crossings);
         evaluations[i] = march.evaluations();
         progress.advance();
@@ -60,8 +60,8 @@ WindingRows::WindingRows(const WindingTree& tree, const BBoxd& bounds, const Row
 }
 
 Coord WindingRows::firstVoxel(std::int64_t bundle) const {
-    const auto y = static_cast<int>(bundle / mMap.count.z());
-    const auto z = static_cast<int>(bundle % mMap.count.z());
+    const auto y = static_cast<int>(bundle / mCells.count.z());
+    const auto z = static_cast<int>(bundle % mCells.count.z());
     return mFirstVoxel + Coord(0, y * kSide, z * kSide);
 }
 
@@ -69,8 +69,8 @@ std::span<const float> WindingRows::rowOfVoxel(int y, int z) const {
     const int fromY = y - mFirstVoxel.y(), fromZ = z - mFirstVoxel.z();
     if (fromY < 0 || fromZ < 0) return {};
     const int bundleY = fromY / kSide, bundleZ = fromZ / kSide;
-    if (bundleY >= mMap.count.y() || bundleZ >= mMap.count.z()) return {};
-    return row(std::int64_t(bundleY) * mMap.count.z() + bundleZ, fromY % kSide, fromZ % kSide, 0);
+    if (bundleY >= mCells.count.y() || bundleZ >= mCells.count.z()) return {};
+    return row(std::int64_t(bundleY) * mCells.count.z() + bundleZ, fromY % kSide, fromZ % kSide, 0);
 }
 
 void WindingRows::subtract(const Mesh& solid, Progress& progress) {

@@ -18,9 +18,10 @@ namespace bandvox {
 /// whose winding number is above WindingMap::kInside, in its box. Rows are kept in bundles, the
 /// rows that pass through a square of kSide by kSide voxels.
 ///
-/// Crossings at triangles are as exact as doubles. In openings the winding number is followed to
-/// the place where it is that, to a hundredth of a voxel or so. What enters and leaves an opening
-/// within a cell of kSide voxels, hitting no triangle there, may be missed.
+/// Crossings at triangles are as exact as floats, counted from the first cell. In openings the
+/// winding number is followed to the place where it is that, to a hundredth of a voxel or so. What
+/// enters and leaves an opening within a cell of kSide voxels, hitting no triangle there, may be
+/// missed.
 class WindingRows {
   public:
     static constexpr int kSide = 4;
@@ -32,7 +33,7 @@ class WindingRows {
 
     const RowLattice& lattice() const { return mLattice; }
     /// Along y and z; x is 1.
-    openvdb::Coord bundleCount() const { return {1, mMap.count.y(), mMap.count.z()}; }
+    openvdb::Coord bundleCount() const { return {1, mCells.count.y(), mCells.count.z()}; }
     /// The first voxel of a bundle along y and z.
     openvdb::Coord firstVoxel(std::int64_t bundle) const;
     /// The crossings of row i of a bundle's voxel, x rising, voxels: entering, leaving, entering, …
@@ -59,7 +60,7 @@ class WindingRows {
     };
 
     RowLattice mLattice;
-    CellLattice mMap;
+    CellLattice mCells;
     double mXOrigin;
     openvdb::Coord mFirstVoxel;
     std::vector<Bundle> mBundles;

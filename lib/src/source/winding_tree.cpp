@@ -36,8 +36,8 @@ Vec3d middleOf(const std::array<Vec3d, 3>& corner) {
 double squareDistance(const BBoxd& box, const Vec3d& point) {
     double sum = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        const double away = std::max({box.min()[axis] - point[axis], 0.0,
-                                      point[axis] - box.max()[axis]});
+        const double away =
+            std::max({box.min()[axis] - point[axis], 0.0, point[axis] - box.max()[axis]});
         sum += away * away;
     }
     return sum;
@@ -243,8 +243,7 @@ void WindingTree::fillFromChildren(const Node& left, const Node& right, Node& no
     node.radius = std::min(node.radius, std::sqrt(radius));
 }
 
-void WindingTree::collect(const WindingRegion& region, double farAway,
-                          WindingTerms& terms) const {
+void WindingTree::collect(const WindingRegion& region, double farAway, WindingTerms& terms) const {
     const double size = mNodes.empty() ? 0 : mNodes[0].radius;
     terms.begin(region.center, region.radius > 0 ? region.radius : size > 0 ? size : 1);
     descend([&](std::uint32_t i) {

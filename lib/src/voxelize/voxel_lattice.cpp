@@ -1,5 +1,6 @@
 #include "voxelize/voxel_lattice.h"
 
+#include "core/smallest_voxel.h"
 #include "voxelize/bit_column.h"
 #include "voxelize/voxel_column.h"
 
@@ -71,6 +72,12 @@ VoxelLattice layOutVoxels(const std::string& name, const openvdb::BBoxd& bounds,
 
     const double voxelSize =
         options.voxelSize > 0 ? options.voxelSize : longest / options.resolution;
+    if (voxelSize < kSmallestVoxel) {
+        fail(options.voxelSize > 0 ? ErrorKind::Usage : ErrorKind::Input, name,
+             ": a voxel would be ", voxelSize,
+             " world units, and OpenVDB's transforms take no less than ", kSmallestVoxel,
+             options.voxelSize > 0 ? "; use larger ones" : "; scale the object up");
+    }
     const openvdb::Vec3d low = bounds.min() / voxelSize;
     const openvdb::Vec3d high = bounds.max() / voxelSize;
     VoxelLattice lattice;

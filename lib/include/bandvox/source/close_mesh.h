@@ -24,7 +24,8 @@ struct CloseMeshOptions {
     double weldTolerance = 2.4e-7;
 
     /// Cracks that are no wider than this are stitched, relative to the longest side of the mesh's
-    /// box; 0 stitches only where points lie on edges to within rounding.
+    /// box, nor wider than a tenth of the usual edge on its border; 0 stitches only where points
+    /// lie on edges to within rounding.
     double crackTolerance = 1e-4;
 
     bool requireSolid = true;  ///< throw what keeps it from being a solid, besides reporting it
@@ -53,6 +54,7 @@ struct CloseMeshReport {
     std::size_t oneSided = 0;             ///< pieces on which inside and outside cannot be told
     std::size_t soupPieces = 0;           ///< pieces that were set aside as soup
     std::size_t soupTriangles = 0;        ///< of those
+    std::size_t sheets = 0;               ///< open pieces that enclose hardly anything, capped
     std::vector<CappedHole> holes;        ///< in order of falling perimeter; without those of soup
     std::vector<std::string> warnings;    ///< in words, for the user
     std::string problem;                  ///< why it bounds no solid; empty if it does

@@ -31,7 +31,7 @@ struct SoupOptions {
 /// with a boundary.
 ///
 /// Rows along x, so many to a voxel, are followed through it. Where they enter and leave is as
-/// exact as doubles at triangles, and to a hundredth of a voxel in openings; so the only error
+/// exact as floats at triangles, and to a hundredth of a voxel in openings; so the only error
 /// worth mentioning is that of the rows' distance from each other. The elements are bundles of
 /// rows, and samples are crossings, with area vectors along x. (`quadrature` is not used.) Samples
 /// without area say where a face runs along the rows.
