@@ -212,7 +212,7 @@ TEST_F(Voxelize, SaysWhatCannotBe) {
     expectFailure({"shape:cube", "-o", "v.vdb", "--backend", "gpu"}, 2, "formula");
     expectFailure({"cube.obj", "-o", "v.vdb", "--voxel-size", "1e-300"}, 2, "voxel");
     expectFailure({"cube.obj", "-o", "v.vdb", "--voxel-size", "2e-5"}, 5, "memory");
-    expectFailure({"shape:sphere", "-o", "v.vdb", "-r", "1000000"}, 5, "memory");
+    expectFailure({"shape:sphere", "-o", "v.vdb", "-r", "100000"}, 5, "memory");
 }
 
 }  // namespace

@@ -372,7 +372,7 @@ TEST(FieldToDensity, RefusesWhatCannotBe) {
     options.oversample = 65;
     EXPECT_EQ(kindOf(options), ErrorKind::Usage);
     options.oversample = 4;
-    options.density.voxelSize = 1e-7;
+    options.density.voxelSize = 2e-5;
     EXPECT_EQ(kindOf(options), ErrorKind::Memory);
 }
 

@@ -134,7 +134,7 @@ TEST(SoupToDensity, SaysWhatCannotBe) {
     EXPECT_EQ(kind(sheet, voxelsOf(0.1)), ErrorKind::Result);
     EXPECT_EQ(kind(test::panels(0.1), voxelsOf(0.1, 0)), ErrorKind::Usage);
     EXPECT_EQ(kind(test::panels(0.1), voxelsOf(-1)), ErrorKind::Usage);
-    EXPECT_EQ(kind(test::panels(0.1), voxelsOf(1e-6)), ErrorKind::Memory);
+    EXPECT_EQ(kind(test::panels(0.1), voxelsOf(2e-5)), ErrorKind::Memory);
     SoupDensityOptions options = voxelsOf(0.1);
     options.samplingTolerance = std::nan("");
     EXPECT_EQ(kind(test::panels(0.1), options), ErrorKind::Usage);

@@ -115,7 +115,9 @@ TEST(FieldToVoxels, RefusesWhatCannotBe) {
     const auto sphere = makeShapeField("shape:sphere");
     EXPECT_EQ(kindOfFailure(*sphere, {.resolution = 0}), ErrorKind::Usage);
     EXPECT_EQ(kindOfFailure(*sphere, {.voxelSize = -1}), ErrorKind::Usage);
-    EXPECT_EQ(kindOfFailure(*sphere, {.resolution = 1 << 20}), ErrorKind::Memory);
+    EXPECT_EQ(kindOfFailure(*sphere, {.voxelSize = 2e-5}), ErrorKind::Memory);
+    EXPECT_EQ(kindOfFailure(*sphere, {.resolution = 1 << 20}), ErrorKind::Input) << "too small";
+    EXPECT_EQ(kindOfFailure(*sphere, {.voxelSize = 1e-5}), ErrorKind::Usage);
     EXPECT_EQ(kindOfFailure(Peak(BBoxd()), {}), ErrorKind::Input);
     EXPECT_EQ(kindOfFailure(Peak(BBoxd(Vec3d(1.0), Vec3d(1.0))), {}), ErrorKind::Input);
     EXPECT_EQ(kindOfFailure(Peak(BBoxd(Vec3d(-infinity), Vec3d(infinity))), {}), ErrorKind::Usage);

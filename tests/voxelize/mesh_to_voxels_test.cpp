@@ -334,7 +334,8 @@ TEST(MeshToVoxels, RefusesSizesOutOfRange) {
         EXPECT_EQ(kindOfFailure(mesh, options), ErrorKind::Usage) << options.voxelSize;
     }
     EXPECT_EQ(kindOfFailure(test::cube(Vec3d(1e9), 2), {.voxelSize = 0.1}), ErrorKind::Usage);
-    EXPECT_EQ(kindOfFailure(mesh, {.resolution = 1 << 20}), ErrorKind::Memory);
+    EXPECT_EQ(kindOfFailure(mesh, {.voxelSize = 2e-5}), ErrorKind::Memory);
+    EXPECT_EQ(kindOfFailure(mesh, {.resolution = 1 << 20}), ErrorKind::Input);
 }
 
 class Interrupting final : public Progress {
