@@ -120,7 +120,9 @@ const CommandTable& renderTable() {
             "Draw the surface of a density (.vdb) as a picture (.png, .exr).",
             "Draws the surface where the density is 0.5, or as given. Lines of sight are followed "
             "to the band-limited density that the grid stands for, and the normal is its "
-            "gradient, so the picture shows no voxels. An .exr also holds depth (Z), normals (N) "
+            "gradient, so the picture shows no voxels. Densities and level sets of other programs "
+            "are read by the cubic spline through their values. An .exr also holds depth (Z), "
+            "normals (N) "
             "and positions (P).",
             {{"INPUT", "A .vdb file; stdin.vdb is the standard input."}},
             {
@@ -146,7 +148,8 @@ const CommandTable& renderTable() {
                  "Width of the view in world units (orthographic); 0 fits the object.", view},
                 {"grid", 0, "NAME", "density, or the only one of floats", "Which grid to draw.",
                  look},
-                {"iso", 0, "D", "as stored, else 0.5", "Density that is the surface.", look},
+                {"iso", 0, "D", "as stored, else 0.5",
+                 "Density that is the surface; of a level set the distance, by default 0.", look},
                 {"shading", 0, "KIND", shadingNames().front(),
                  joined(shadingNames(), ", ") +
                      ": where normals come from. All but the first see voxels as cubes, show "
