@@ -68,6 +68,7 @@ RenderRequest parseRender(const CommandLine& line) {
     options.color = line.vector("color", kColor).value_or(options.color);
     options.ambient = line.number("ambient", {.low = 0, .high = 1}, options.ambient);
     options.background = line.vector("background", kColor);
+    options.allowEmpty = line.has("allow-empty");
     requireValid(options);
     return request;
 }
@@ -133,6 +134,9 @@ const CommandTable& renderTable() {
                 {"samples", 0, "N", std::to_string(options.samples), "Lines of sight per pixel.",
                  picture},
                 {"background", 0, "R,G,B", "transparent", "Linear colour behind the object.",
+                 picture},
+                {"allow-empty", 0, "", "",
+                 "Write a picture even if nothing is seen, as of the empty frames of a sequence.",
                  picture},
                 {"camera", 0, "KIND", "perspective", "perspective or orthographic.", view},
                 {"eye", 0, "X,Y,Z", "chosen", "Where the camera is, world.", view},

@@ -141,5 +141,34 @@ TEST(ForeignGrids, FogOfTilesAloneIsDrawn) {
     EXPECT_THROW(densityToImage(grid, options), Error);
 }
 
+TEST(ForeignGrids, NothingMayBeSeenIfThatIsAllowed) {
+    RenderOptions options = smallPicture(20, 15);
+    options.background = Vec3d(0.25, 0.5, 1);
+    auto thin = openvdb::FloatGrid::create(0);
+    thin->fill(openvdb::CoordBBox(Coord(0), Coord(20)), 0.2F);
+    auto behind = ballGrid();
+    for (const Shading shading : {Shading::Spectral, Shading::Phong}) {
+        options.shading = shading;
+        for (const auto& grid : {openvdb::FloatGrid::create(0), thin, behind}) {
+            if (grid == behind) {
+                options.camera.eye = Vec3d(20, 20, 500);
+                options.camera.lookat = Vec3d(20, 20, 1000);
+            }
+            options.allowEmpty = false;
+            EXPECT_THROW(densityToImage(grid, options), Error);
+            options.allowEmpty = true;
+            const RenderResult result = densityToImage(grid, options);
+            EXPECT_EQ(result.hits, 0);
+            EXPECT_EQ(result.rays, 300);
+            for (std::size_t i = 0; i < 300; ++i) {
+                EXPECT_EQ(result.image.color[4 * i + 1], 0.5F);
+                EXPECT_EQ(result.image.color[4 * i + 3], 1);
+                EXPECT_TRUE(std::isinf(result.image.depth[i]));
+            }
+        }
+        options.camera = {};
+    }
+}
+
 }  // namespace
 }  // namespace bandvox::render_test

@@ -102,6 +102,9 @@ RenderResult densityToImage(const openvdb::FloatGrid::ConstPtr& grid, const Rend
     // Refuse what cannot be drawn.
     requireValid(options);
     if (!grid) throw Error(ErrorKind::Input, "a picture needs a density grid, but got none");
+    if (options.allowEmpty && grid->evalActiveVoxelBoundingBox().empty()) {
+        return emptyPicture(options, options.iso.value_or(0.5), *grid);
+    }
     const DrawableGrid drawable = makeDrawable(grid, options);
     const openvdb::FloatGrid& field = *drawable.grid;
     const double iso = drawable.iso;
@@ -114,7 +117,10 @@ RenderResult densityToImage(const openvdb::FloatGrid::ConstPtr& grid, const Rend
     // Find where the surface can be, and read the lattice there.
     const SurfaceBlocks blocks(field, surfaceThreshold(drawable));
     if (!blocks.finite()) failNotFinite(field);
-    if (blocks.empty()) failEmpty(blocks.maximum(), iso);
+    if (blocks.empty()) {
+        if (options.allowEmpty) return emptyPicture(options, iso, *grid);
+        failEmpty(blocks.maximum(), iso);
+    }
     const SurfaceField surface = readSurface(drawable, blocks.maximum());
     const RayMarch march(blocks, iso, surface.clear);
 
@@ -124,7 +130,7 @@ RenderResult densityToImage(const openvdb::FloatGrid::ConstPtr& grid, const Rend
     const Scene scene(field, options, camera, march, surface.slope);
     result.hits = drawTiles(scene, *surface.reconstruction, result.image, progress);
     result.rays = std::int64_t(options.width) * options.height * options.samples;
-    requireHits(result, blocks.maximum(), iso);
+    if (!options.allowEmpty) requireHits(result, blocks.maximum(), iso);
     return result;
 }
 

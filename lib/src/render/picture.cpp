@@ -71,6 +71,16 @@ void setColor(Image& image, std::size_t pixel, const openvdb::Vec3d& light, int 
     image.color[4 * pixel + 3] = options.background ? 1.0F : static_cast<float>(coverage);
 }
 
+RenderResult emptyPicture(const RenderOptions& options, double iso, const openvdb::GridBase& grid) {
+    RenderResult result;
+    result.image = blankImage(options, iso, grid);
+    for (std::size_t i = 0; i < result.image.depth.size(); ++i) {
+        setColor(result.image, i, openvdb::Vec3d(0.0), 0, options);
+    }
+    result.rays = std::int64_t(options.width) * options.height * options.samples;
+    return result;
+}
+
 Lighting::Lighting(const RenderOptions& options, const Camera& camera)
     : mColor(options.color), mAmbient(options.ambient) {
     const openvdb::Vec3d& light = options.light;

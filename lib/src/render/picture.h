@@ -21,6 +21,9 @@ std::vector<openvdb::Vec2d> samplePlaces(int samples);
 /// allocating if it would not fit.
 Image blankImage(const RenderOptions& options, double iso, const openvdb::GridBase& grid);
 
+/// The picture of a grid of which nothing is to be seen.
+RenderResult emptyPicture(const RenderOptions& options, double iso, const openvdb::GridBase& grid);
+
 /// What a line of sight meets.
 struct Sight {
     double depth;

@@ -158,7 +158,10 @@ class VoxelPicture {
 RenderResult voxelsToImage(const VoxelScene& scene, Progress& progress) {
     const RenderOptions& options = scene.options;
     const SolidVoxels solid(scene.grid, scene.iso);
-    if (solid.empty()) failEmpty(solid.maximum(), scene.iso);
+    if (solid.empty()) {
+        if (options.allowEmpty) return emptyPicture(options, scene.iso, scene.grid);
+        failEmpty(solid.maximum(), scene.iso);
+    }
 
     RenderResult result;
     result.image = blankImage(options, scene.iso, scene.grid);
@@ -174,7 +177,7 @@ RenderResult voxelsToImage(const VoxelScene& scene, Progress& progress) {
     }
     result.hits = picture.finish();
     result.rays = std::int64_t(options.width) * options.height * options.samples;
-    requireHits(result, solid.maximum(), scene.iso);
+    if (!options.allowEmpty) requireHits(result, solid.maximum(), scene.iso);
     return result;
 }
 

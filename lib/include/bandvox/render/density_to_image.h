@@ -24,6 +24,7 @@ struct RenderOptions {
     openvdb::Vec3d light{-0.4, 0.7, 0.8};  ///< towards the light, in camera axes (right, up, back)
     openvdb::Vec3d color{0.8, 0.8, 0.8};   ///< linear, of the surface
     double ambient = 0.1;                  ///< light from everywhere, 0 to 1
+    bool allowEmpty = false;               ///< let nothing be seen, instead of throwing
     std::optional<openvdb::Vec3d> background;  ///< linear; default: transparent
 };
 
@@ -48,7 +49,8 @@ struct RenderResult {
 /// Figure 7 and section 3.2 of Chiba, Aoki, Saito (1990), with signed frequencies.
 /// Throws Error(ErrorKind::Usage) for options out of range, Error(ErrorKind::Input) if the grid
 /// has no active voxel or bends lines of sight, holds values that are not finite or a stored
-/// iso-value that is not above its background, Error(ErrorKind::Result) if nothing is seen.
+/// iso-value that is not above its background, Error(ErrorKind::Result) if nothing is seen
+/// and that is not allowed.
 RenderResult densityToImage(const openvdb::FloatGrid::ConstPtr& grid,
                             const RenderOptions& options = {},
                             Progress& progress = silentProgress());
