@@ -196,4 +196,30 @@ TEST(Camera, RefusesWhatDefinesNoView) {
     EXPECT_THROW(Camera({}, 0, 10, kBox), Error);
 }
 
+// From anywhere, a ball lies in the middle of the picture and fills it; its box's corners do not
+// keep it away.
+TEST(Camera, FramesThePointsThatItIsGiven) {
+    std::vector<Vec3d> points;
+    for (int i = 0; i < 2000; ++i) {
+        const double z = 1 - 2 * (i + 0.5) / 2000, angle = 2.399963 * i;
+        const double r = std::sqrt(1 - z * z);
+        points.push_back(Vec3d(3, -2, 1) + Vec3d(r * std::cos(angle), r * std::sin(angle), z));
+    }
+    for (const Vec3d& from : {Vec3d(0.55, 0.35, 1), Vec3d(-1, 2, 0.3)}) {
+        CameraOptions options;
+        options.from = from;
+        const Camera camera(options, 100, 100, points);
+        const Ray middle = camera.ray(50, 50);
+        const Vec3d toCenter = Vec3d(3, -2, 1) - middle.origin;
+        EXPECT_LT(toCenter.cross(middle.direction).length(), 0.03);
+        // The edges of the picture just miss it.
+        for (const auto& [x, y] : {std::pair(0.0, 50.0), {100.0, 50.0}, {50.0, 0.0}}) {
+            const Ray edge = camera.ray(x, y);
+            const double away = toCenter.cross(edge.direction).length();
+            EXPECT_GT(away, 1);
+            EXPECT_LT(away, 1.08);
+        }
+    }
+}
+
 }  // namespace
