@@ -8,7 +8,7 @@
 #include <bandvox/voxelize/soup_to_voxels.h>
 
 #include <cmath>
-#include <optional>
+#include <memory>
 #include <vector>
 
 namespace bandvox {
@@ -29,11 +29,13 @@ class SoupScan {
           mShift(static_cast<int>(std::floor(samples.offset))),
           mRows(WindingTree(triangles.soup), boxAround(triangles.soup),
                 RowLattice::oneToAVoxel(samples.voxelSize, samples.offset - mShift), progress) {
-        if (!triangles.solid.triangles.empty()) mSolid.emplace(triangles.solid, samples);
+        if (!triangles.solid.triangles.empty()) {
+            mSolid = std::make_unique<LatticeMesh>(triangles.solid, samples);
+        }
     }
 
     // What either winds around is inside.
-    BitColumn operator()(const openvdb::Coord& block) const {
+    BitColumn column(const openvdb::Coord& block) const {
         std::vector<RowCrossing> crossings;
         if (mSolid) mSolid->cross(block, crossings);
         const openvdb::Coord corner = block << kBlockLog2;
@@ -55,7 +57,7 @@ class SoupScan {
     const VoxelLattice& mSamples;
     int mShift;  // whole voxels of the samples' offset
     WindingRows mRows;
-    std::optional<LatticeMesh> mSolid;
+    std::unique_ptr<LatticeMesh> mSolid;
 };
 
 }  // namespace
@@ -78,7 +80,9 @@ VoxelResult soupToVoxels(const SoupOfTriangles& triangles, const VoxelOptions& o
         const ProgressStage stage(progress, "voxelizing", lattice.columnCount());
         parallelFor(lattice.columnCount(), [&](std::int64_t i) {
             progress.throwIfInterrupted();
-            columns[i] = makeColumn(lattice, alongX, lattice.columnBlock(i), scan);
+            columns[i] =
+                makeColumn(lattice, alongX, lattice.columnBlock(i),
+                           [&scan](const openvdb::Coord& block) { return scan.column(block); });
             progress.advance();
         });
     }
