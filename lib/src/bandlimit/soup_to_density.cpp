@@ -1,6 +1,7 @@
 #include "bandlimit/density_steps.h"
 #include "bandlimit/grid_difference.h"
 #include "core/words.h"
+#include "source/mesh_bounds.h"
 
 #include <bandvox/bandlimit/soup_to_density.h>
 #include <bandvox/bandlimit/surface_to_density.h>
@@ -17,12 +18,6 @@
 namespace bandvox {
 
 namespace {
-
-openvdb::BBoxd boundsOf(const Mesh& mesh) {
-    openvdb::BBoxd box;
-    for (const openvdb::Vec3d& p : mesh.points) box.expand(p);
-    return box;
-}
 
 std::string largeError(double error, double tolerance, int rows) {
     return "the sampling error is up to " + inShort(error) + ", above the tolerance of " +

@@ -1,6 +1,7 @@
 #include "core/words.h"
 #include "source/cap_holes.h"
 #include "source/compensated_sum.h"
+#include "source/mesh_bounds.h"
 #include "source/orient_components.h"
 #include "source/remove_duplicates.h"
 #include "source/separate_soup.h"
@@ -84,9 +85,7 @@ void requireTolerance(double tolerance, const char* name) {
 }
 
 double longestSide(const Mesh& mesh) {
-    openvdb::BBoxd box;
-    for (const Vec3d& p : mesh.points) box.expand(p);
-    const Vec3d size = box.extents();
+    const Vec3d size = boundsOf(mesh).extents();
     return std::max({size.x(), size.y(), size.z()});
 }
 
@@ -110,8 +109,7 @@ std::string problemOfSides(const Mesh& mesh, const MeshComponents& components) {
 
 /// Why a closed mesh is no solid: it encloses nothing. Empty if it does.
 std::string problemOfVolume(const Mesh& mesh) {
-    openvdb::BBoxd box;
-    for (const Vec3d& p : mesh.points) box.expand(p);
+    const openvdb::BBoxd box = boundsOf(mesh);
     CompensatedSum volume;
     CompensatedSum area;
     for (const Vec3I& t : mesh.triangles) {

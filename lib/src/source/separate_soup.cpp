@@ -1,5 +1,6 @@
 #include "source/separate_soup.h"
 
+#include "source/mesh_bounds.h"
 #include "source/orient_by_rays.h"
 #include "source/turn_outward.h"
 #include "source/weld_points.h"
@@ -16,7 +17,6 @@ namespace bandvox {
 
 namespace {
 
-using openvdb::BBoxd;
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
@@ -91,12 +91,6 @@ std::vector<OpenPiece> measure(const Mesh& mesh, const MeshComponents& component
     return pieces;
 }
 
-BBoxd boxOf(const Mesh& mesh) {
-    BBoxd box;
-    for (const Vec3d& p : mesh.points) box.expand(p);
-    return box;
-}
-
 // Those of the caps whose pieces are wanted, as a mesh.
 Mesh capsOf(const Mesh& mesh, const std::vector<std::uint32_t>& pieceOf, std::size_t firstCap,
             const std::vector<char>& isWanted) {
@@ -120,7 +114,7 @@ class CapJudge {
           mPieceOf(pieceOf),
           mFirstCap(firstCap),
           mClosed(mesh),
-          mAside(kAsideOfMesh * boxOf(mesh).extents().length()) {
+          mAside(kAsideOfMesh * boundsOf(mesh).extents().length()) {
         setOpen(std::vector<char>(pieceCount, 0));
     }
 
@@ -133,12 +127,7 @@ class CapJudge {
     bool isWrong(const OpenPiece& piece, std::uint32_t number) const {
         std::optional<WindingNumber> own;
         if (mIsOpen[number] == 0) {
-            Mesh caps;
-            caps.points = mMesh.points;
-            for (const std::uint32_t cap : piece.allCaps) {
-                caps.triangles.push_back(mMesh.triangles[cap]);
-            }
-            own.emplace(std::move(caps));
+            own.emplace(capsOfPiece(piece));
         }
         double wrong = 0, all = 0;
         for (const std::uint32_t cap : piece.caps) {
@@ -156,6 +145,19 @@ class CapJudge {
     }
 
   private:
+    // With points of their own: of a large mesh only few are theirs.
+    Mesh capsOfPiece(const OpenPiece& piece) const {
+        Mesh caps;
+        for (const std::uint32_t cap : piece.allCaps) {
+            const auto first = static_cast<openvdb::Index32>(caps.points.size());
+            for (int k = 0; k < 3; ++k) {
+                caps.points.push_back(mMesh.points[mMesh.triangles[cap][k]]);
+            }
+            caps.triangles.emplace_back(first, first + 1, first + 2);
+        }
+        return caps;
+    }
+
     // True if the place is clearly inside without the caps and outside with them, or the other way
     // round.
     bool isWrongAt(const Vec3d& place, const std::optional<WindingNumber>& own) const {
@@ -257,7 +259,7 @@ std::size_t turnOpenPieces(Mesh& mesh, const MeshComponents& components, std::si
     return flipped + orientByRays(mesh, components.ofTriangle, isFlat, firstCap);
 }
 
-// Splits a mesh.
+// Moves the pieces that are soup out of a mesh, leaving their caps away.
 SeparatedSoup split(Mesh& mesh, MeshComponents& components, std::size_t firstCap,
                     std::vector<char> isSoup) {
     SeparatedSoup separated;

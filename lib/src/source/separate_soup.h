@@ -18,16 +18,15 @@ struct SeparatedSoup {
     std::size_t trianglesFlipped = 0;  ///< of all, because rays said so
 };
 
-/// Takes those pieces out of a mesh whose holes have just been capped whose caps lie where the
-/// winding number of all that is not capped is clearly another than on the caps' sides: so a cap
-/// would be a wall within what the pieces enclose together, or leave it empty. Panels of a box that
-/// do not touch are such pieces, and shells that were cut up.
+/// Takes those pieces out of a mesh whose holes have just been capped that are soup: whose caps are
+/// large beside the piece, and lie where the winding number, such pieces being left open and all
+/// others capped, is clearly another than on the caps' sides. A cap would be a wall within what the
+/// pieces enclose together, or leave it empty. Panels of a box that do not touch are such pieces,
+/// and shells that were cut up. Other open pieces follow if the soup contradicts their caps.
 ///
-/// Pieces that are flat may look the wrong way, which confuses the winding number: they are turned
-/// first, as rays say.
-///
-/// `firstCap`: the caps are the triangles from there on. Of large meshes a part of the pieces
-/// speaks for all.
+/// Where any may be soup, open pieces are turned outward first: by what they enclose, flat ones as
+/// rays say. `firstCap`: the caps are the triangles from there on. Of more than a thousand pieces a
+/// part speaks for all.
 SeparatedSoup separateSoup(Mesh& mesh, MeshComponents& components, std::size_t firstCap);
 
 /// Takes all pieces out.

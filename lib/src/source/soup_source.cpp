@@ -1,4 +1,5 @@
 #include "source/compensated_sum.h"
+#include "source/mesh_bounds.h"
 #include "source/region_clip.h"
 #include "source/winding_rows.h"
 
@@ -35,11 +36,9 @@ std::shared_ptr<const WindingRows> makeRows(const Mesh& soup, const SoupOptions&
         throw Error(ErrorKind::Usage, "the voxel size is " + std::to_string(options.voxelSize) +
                                           "; expected a positive one, in world units");
     }
-    BBoxd bounds;
-    for (const Vec3d& p : soup.points) bounds.expand(p);
     const auto rows = std::make_shared<WindingRows>(
-        WindingTree(soup), bounds, RowLattice::turned(options.voxelSize, options.rowsPerVoxel),
-        progress);
+        WindingTree(soup), boundsOf(soup),
+        RowLattice::turned(options.voxelSize, options.rowsPerVoxel), progress);
     if (options.solid != nullptr && !options.solid->triangles.empty()) {
         rows->subtract(*options.solid, progress);
     }

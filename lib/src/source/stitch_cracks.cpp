@@ -2,6 +2,7 @@
 
 #include "source/box_tree.h"
 #include "source/directed_edges.h"
+#include "source/mesh_bounds.h"
 #include "source/no_index.h"
 #include "source/weld_points.h"
 
@@ -99,9 +100,7 @@ struct EdgePart {
 std::vector<EdgePart> cutEdges(const Mesh& mesh, const std::vector<std::uint32_t>& boundary) {
     constexpr double kPartsOfMesh = 64;
     const DirectedEdges edges(mesh);
-    openvdb::BBoxd box;
-    for (const Vec3d& p : mesh.points) box.expand(p);
-    const double longest = box.extents().length() / kPartsOfMesh;
+    const double longest = boundsOf(mesh).extents().length() / kPartsOfMesh;
     std::vector<EdgePart> parts;
     for (std::uint32_t i = 0; i < boundary.size(); ++i) {
         const std::uint32_t e = boundary[i];

@@ -1,3 +1,4 @@
+#include "source/mesh_bounds.h"
 #include "source/winding_rows.h"
 #include "voxelize/lattice_mesh.h"
 #include "voxelize/voxel_assembly.h"
@@ -15,19 +16,13 @@ namespace bandvox {
 
 namespace {
 
-openvdb::BBoxd boxAround(const Mesh& mesh) {
-    openvdb::BBoxd box;
-    for (const openvdb::Vec3d& p : mesh.points) box.expand(p);
-    return box;
-}
-
 // The rows of samples of a soup, and a solid beside it.
 class SoupScan {
   public:
     SoupScan(const SoupOfTriangles& triangles, const VoxelLattice& samples, Progress& progress)
         : mSamples(samples),
           mShift(static_cast<int>(std::floor(samples.offset))),
-          mRows(WindingTree(triangles.soup), boxAround(triangles.soup),
+          mRows(WindingTree(triangles.soup), boundsOf(triangles.soup),
                 RowLattice::oneToAVoxel(samples.voxelSize, samples.offset - mShift), progress) {
         if (!triangles.solid.triangles.empty()) {
             mSolid = std::make_unique<LatticeMesh>(triangles.solid, samples);
@@ -66,8 +61,8 @@ VoxelResult soupToVoxels(const SoupOfTriangles& triangles, const VoxelOptions& o
                          Progress& progress) {
     VoxelOptions alongX = options;
     alongX.axis = ScanAxis::X;
-    openvdb::BBoxd bounds = boxAround(triangles.soup);
-    if (!triangles.solid.triangles.empty()) bounds.expand(boxAround(triangles.solid));
+    openvdb::BBoxd bounds = boundsOf(triangles.soup);
+    if (!triangles.solid.triangles.empty()) bounds.expand(boundsOf(triangles.solid));
     const VoxelLattice lattice = layOutVoxels(triangles.name, bounds, alongX);
     // Of what a soup encloses nothing is known but its box.
     const openvdb::Vec3d size = bounds.extents();
