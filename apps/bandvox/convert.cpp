@@ -67,8 +67,8 @@ void readRoute(const CommandLine& line, ConvertRequest& request) {
         const bool mayBeUsed = request.route == Route::Auto && !isShape(request.input);
         if (!isSampling && !mayBeUsed) {
             throw Error(ErrorKind::Usage,
-                        "--oversample is for the sampled route and that of the winding number; "
-                        "expected --route sampled or --route winding with it");
+                        "--oversample has no meaning on the exact route; expected "
+                        "--route sampled with a shape, or another --route with a mesh");
         }
         request.oversample = line.wholeNumber("oversample", 1, kMostOversample, 1);
     }
@@ -294,8 +294,7 @@ const CommandTable& convertTable() {
                  std::to_string(FieldDensityOptions().oversample) + ", winding " +
                      std::to_string(SoupDensityOptions().rowsPerVoxel),
                  "Samples along a voxel's side on the sampled route, whose error is measured if "
-                 "they are "
-                 "even, or rows on that of the winding number, 1 to 64.",
+                 "they are even, or rows on that of the winding number, 1 to 64.",
                  filter},
                 {"overlap", 0, "KIND", "union",
                  "Where shells of a mesh overlap. union: inside is inside. sum: densities add up, "

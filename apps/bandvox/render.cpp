@@ -123,8 +123,7 @@ const CommandTable& renderTable() {
             "to the band-limited density that the grid stands for, and the normal is its "
             "gradient, so the picture shows no voxels. Densities and level sets of other programs "
             "are read by the cubic spline through their values. An .exr also holds depth (Z), "
-            "normals (N) "
-            "and positions (P).",
+            "normals (N) and positions (P).",
             {{"INPUT", "A .vdb file; stdin.vdb is the standard input."}},
             {
                 {"output", 'o', "FILE", "", "The .png or .exr file to write. Needed.", picture},
