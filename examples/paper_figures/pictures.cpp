@@ -33,7 +33,7 @@ Image blankImage(int size) {
     image.depth.assign(pixels, std::numeric_limits<float>::infinity());
     image.normal.assign(3 * pixels, 0.0F);
     image.position.assign(3 * pixels, 0.0F);
-    image.metadata = {{"Software", "Bandvox"}};
+    image.metadata.emplace_back("Software", std::string("Bandvox"));
     return image;
 }
 

@@ -60,7 +60,8 @@ Image sampleImage(int width, int height) {
             image.position.push_back(p == 0 ? 0 : 1000.01F * static_cast<float>(c) + shade);
         }
     }
-    image.metadata = {{"Software", "Bandvox test"}, {"bandvox_iso", "0.5"}};
+    image.metadata.emplace_back("Software", std::string("Bandvox test"));
+    image.metadata.emplace_back("bandvox_iso", 0.5);
     return image;
 }
 
@@ -73,7 +74,7 @@ TEST_F(ImageFile, WritesEveryChannelOfAnExr) {
     ASSERT_EQ(spec.width, 7);
     ASSERT_EQ(spec.height, 5);
     EXPECT_EQ(spec.get_string_attribute("Software"), "Bandvox test");
-    EXPECT_EQ(spec.get_string_attribute("bandvox_iso"), "0.5");
+    EXPECT_EQ(spec.get_float_attribute("bandvox_iso"), 0.5F);
     std::vector<float> data(std::size_t(35) * spec.nchannels);
     ASSERT_TRUE(input->read_image(0, 0, 0, -1, OIIO::TypeDesc::FLOAT, data.data()));
 

@@ -17,7 +17,7 @@ using openvdb::Vec3d;
 
 std::vector<std::pair<double, double>> spans(const SurfaceBlocks& blocks, const Ray& ray) {
     std::vector<std::pair<double, double>> all;
-    blocks.walk(ray, [&](double t0, double t1) {
+    blocks.walk(ray, 1e30, [&](double t0, double t1) {
         all.emplace_back(t0, t1);
         return false;
     });
@@ -109,7 +109,7 @@ TEST(SurfaceBlocks, StopsWhenToldTo) {
     grid->tree().addTile(2, Coord(0), 1.0F, true);
     const SurfaceBlocks blocks(*grid, 0.5);
     int visits = 0;
-    blocks.walk({Vec3d(-50, 3, 3), Vec3d(1, 0, 0)}, [&](double, double) { return ++visits == 2; });
+    blocks.walk({Vec3d(-50, 3, 3), Vec3d(1, 0, 0)}, 1e30, [&](double, double) { return ++visits == 2; });
     EXPECT_EQ(visits, 2);
 }
 

@@ -334,7 +334,13 @@ TEST(VoxelsToImage, APictureOfVoxelsNamesTheirSource) {
     const std::pair<std::string, std::string> source{"bandvox_source", "ball.obj"};
     for (const Shading shading : {Shading::Spectral, Shading::Phong}) {
         const auto metadata = densityToImage(grid, pixelPerVoxel(shading)).image.metadata;
-        EXPECT_EQ(std::count(metadata.begin(), metadata.end(), source), 1);
+        EXPECT_EQ(std::count_if(metadata.begin(), metadata.end(),
+                                [&](const auto& entry) {
+                                    const auto* text = std::get_if<std::string>(&entry.second);
+                                    return entry.first == source.first && text &&
+                                           *text == source.second;
+                                }),
+                  1);
     }
 }
 

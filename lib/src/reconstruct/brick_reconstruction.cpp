@@ -39,6 +39,13 @@ class BrickProbe final : public DensityProbe {
         return brick ? brick->evaluate(mCache.kernel(), local) : DensityAt{mBackground, {0, 0, 0}};
     }
 
+    DensityExpansion expand(const openvdb::Vec3d& index) override {
+        openvdb::Vec3d local;
+        const CoefficientBrick* brick = find(index, local);
+        if (!brick) return {mBackground, {0, 0, 0}, openvdb::Mat3d::zero()};
+        return brick->expand(mCache.kernel(), local);
+    }
+
   private:
     const CoefficientBrick* find(const openvdb::Vec3d& index, openvdb::Vec3d& local) {
         openvdb::Coord place;
@@ -81,6 +88,10 @@ class BrickReconstruction final : public Reconstruction {
 
     DensityAt evaluate(const openvdb::Vec3d& index) const override {
         return BrickProbe(mCache, mBackground).evaluate(index);
+    }
+
+    DensityExpansion expand(const openvdb::Vec3d& index) const override {
+        return BrickProbe(mCache, mBackground).expand(index);
     }
 
     std::unique_ptr<DensityProbe> probe() const override {

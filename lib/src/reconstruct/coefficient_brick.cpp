@@ -1,9 +1,11 @@
 #include "reconstruct/coefficient_brick.h"
 
+#include "core/instruction_sets.h"
+#include "core/lanes.h"
+
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
+#include <span>
 
 namespace bandvox {
 
@@ -18,11 +20,6 @@ int nodesAlong(const SpreadingKernel& kernel) {
 
 int pitchOf(const SpreadingKernel& kernel) {
     return CoefficientBrick::kSide + kernel.paddedWidth();
-}
-
-// The first node under the kernel at the brick's first voxel.
-int firstNode(const SpreadingKernel& kernel) {
-    return -(kernel.width() / 2);
 }
 
 struct ValueRange {
@@ -77,99 +74,54 @@ ValueRange copyLattice(const openvdb::FloatGrid& grid, const openvdb::Coord& ori
     return range;
 }
 
-// out[p] = Σ_l a_l in[p + (L + l)·stride], all p in [0, count). Convolves along the axis whose
-// neighbours are `stride` apart.
-void convolve(const float* in, float* out, std::size_t count, std::size_t stride,
-              const std::vector<float>& taps) {
-    constexpr std::size_t kLanes = 16;
-    const std::size_t reach = taps.size() - 1;
-    const float* middle = in + reach * stride;
-    std::size_t p = 0;
-    for (; p + kLanes <= count; p += kLanes) {
-        float sum[kLanes];
-        for (std::size_t j = 0; j < kLanes; ++j) sum[j] = taps[0] * middle[p + j];
-        for (std::size_t l = 1; l <= reach; ++l) {
-            const float* before = middle + p - l * stride;
-            const float* after = middle + p + l * stride;
-            for (std::size_t j = 0; j < kLanes; ++j) sum[j] += taps[l] * (before[j] + after[j]);
-        }
-        for (std::size_t j = 0; j < kLanes; ++j) out[p + j] = sum[j];
-    }
-    for (; p < count; ++p) {
-        float sum = taps[0] * middle[p];
-        for (std::size_t l = 1; l <= reach; ++l) {
-            sum += taps[l] * (middle[p - l * stride] + middle[p + l * stride]);
-        }
-        out[p] = sum;
-    }
-}
-
-// The kernel's weights around a place along one axis, and where they start in a brick.
-struct AxisWeights {
-    int first;
-    alignas(64) std::array<float, SpreadingKernel::kPaddedWidth> weights;
-    alignas(64) std::array<float, SpreadingKernel::kPaddedWidth> derivatives;
+// `count` rows of `length` outputs each, so far apart.
+struct ConvolutionRows {
+    std::size_t count, length, inPitch, outPitch;
 };
 
-AxisWeights axisWeights(const SpreadingKernel& kernel, double local, bool withDerivatives) {
-    // Split off the whole voxels first, so that a float holds the rest exactly enough.
-    const double whole = std::floor(local);
-    const auto rest = static_cast<float>(local - whole);
-    AxisWeights axis;
-    const int node = withDerivatives
-                         ? kernel.weights(rest, axis.weights.data(), axis.derivatives.data())
-                         : kernel.weights(rest, axis.weights.data());
-    axis.first = static_cast<int>(whole) + node - firstNode(kernel);
-    return axis;
-}
-
-template <int kLanes>
-double sumValue(const float* corner, int width, int nodes, int pitch,
-                const std::array<AxisWeights, 3>& axes) {
-    float sum[kLanes] = {};
-    for (int i = 0; i < width; ++i) {
-        const float* plane = corner + static_cast<std::size_t>(i) * nodes * pitch;
-        float planeSum[kLanes] = {};
-        for (int j = 0; j < width; ++j) {
-            const float weight = axes[1].weights[j];
-            for (int l = 0; l < kLanes; ++l) planeSum[l] += weight * plane[j * pitch + l];
-        }
-        for (int l = 0; l < kLanes; ++l) sum[l] += axes[0].weights[i] * planeSum[l];
+// out[p] = Σ_l a_l in[p + (L + l)·stride] for kVectors · kLanes outputs from p on.
+template <int kVectors, int kLanes>
+[[gnu::always_inline]] inline void convolveLanes(const float* middle, float* out,
+                                                 std::size_t stride, std::span<const float> taps) {
+    Lanes<kLanes> sum[kVectors], before, after;
+    for (int v = 0; v < kVectors; ++v) {
+        loadLanes<kLanes>(middle + v * kLanes, sum[v]);
+        sum[v] *= taps[0];
     }
-    double value = 0;
-    for (int l = 0; l < kLanes; ++l) value += double(sum[l]) * axes[2].weights[l];
-    return value;
+    for (std::size_t l = 1; l < taps.size(); ++l) {
+        for (int v = 0; v < kVectors; ++v) {
+            loadLanes<kLanes>(middle + v * kLanes - l * stride, before);
+            loadLanes<kLanes>(middle + v * kLanes + l * stride, after);
+            sum[v] += taps[l] * (before + after);
+        }
+    }
+    for (int v = 0; v < kVectors; ++v) storeLanes<kLanes>(sum[v], out + v * kLanes);
 }
 
-template <int kLanes>
-DensityAt sumEvaluate(const float* corner, int width, int nodes, int pitch,
-                      const std::array<AxisWeights, 3>& axes) {
-    float sum[kLanes] = {}, sumX[kLanes] = {}, sumY[kLanes] = {};
-    for (int i = 0; i < width; ++i) {
-        const float* plane = corner + static_cast<std::size_t>(i) * nodes * pitch;
-        float planeSum[kLanes] = {}, planeY[kLanes] = {};
-        for (int j = 0; j < width; ++j) {
-            const float weight = axes[1].weights[j], derivative = axes[1].derivatives[j];
-            for (int l = 0; l < kLanes; ++l) {
-                planeSum[l] += weight * plane[j * pitch + l];
-                planeY[l] += derivative * plane[j * pitch + l];
+// Convolves along the axis whose neighbours are `stride` apart.
+BANDVOX_FOR_EACH_INSTRUCTION_SET
+void convolve(const float* in, float* out, const ConvolutionRows& rows, std::size_t stride,
+              std::span<const float> taps) {
+    constexpr int kVectors = 4, kLanes = 16, kFewLanes = 8;
+    const std::size_t reach = taps.size() - 1;
+    for (std::size_t row = 0; row < rows.count; ++row) {
+        const float* middle = in + row * rows.inPitch + reach * stride;
+        float* to = out + row * rows.outPitch;
+        std::size_t p = 0;
+        for (; p + kVectors * kLanes <= rows.length; p += kVectors * kLanes) {
+            convolveLanes<kVectors, kLanes>(middle + p, to + p, stride, taps);
+        }
+        for (; p + kFewLanes <= rows.length; p += kFewLanes) {
+            convolveLanes<1, kFewLanes>(middle + p, to + p, stride, taps);
+        }
+        for (; p < rows.length; ++p) {
+            float sum = taps[0] * middle[p];
+            for (std::size_t l = 1; l <= reach; ++l) {
+                sum += taps[l] * (middle[p - l * stride] + middle[p + l * stride]);
             }
-        }
-        const float weight = axes[0].weights[i], derivative = axes[0].derivatives[i];
-        for (int l = 0; l < kLanes; ++l) {
-            sum[l] += weight * planeSum[l];
-            sumX[l] += derivative * planeSum[l];
-            sumY[l] += weight * planeY[l];
+            to[p] = sum;
         }
     }
-    DensityAt at;
-    for (int l = 0; l < kLanes; ++l) {
-        at.value += double(sum[l]) * axes[2].weights[l];
-        at.gradient[0] += double(sumX[l]) * axes[2].weights[l];
-        at.gradient[1] += double(sumY[l]) * axes[2].weights[l];
-        at.gradient[2] += double(sum[l]) * axes[2].derivatives[l];
-    }
-    return at;
 }
 
 }  // namespace
@@ -198,37 +150,30 @@ CoefficientBrick::CoefficientBrick(const openvdb::FloatGrid& grid, const openvdb
     const std::vector<float> taps(design.prefilter.begin(), design.prefilter.end());
     const std::size_t rowLength = side, plane = rowLength * side, nodes = mNodes;
     scratch.filtered.resize(nodes * plane);
-    convolve(scratch.lattice.data(), scratch.filtered.data(), nodes * plane, plane, taps);
-    for (std::size_t x = 0; x < nodes; ++x) {
-        convolve(&scratch.filtered[x * plane], &scratch.lattice[x * nodes * rowLength],
-                 nodes * rowLength, rowLength, taps);
-    }
-    mCoefficients.assign(nodes * nodes * mPitch, 0.0F);
-    for (std::size_t row = 0; row < nodes * nodes; ++row) {
-        convolve(&scratch.lattice[row * rowLength], &mCoefficients[row * mPitch], nodes, 1, taps);
-    }
+    convolve(scratch.lattice.data(), scratch.filtered.data(), {1, nodes * plane, 0, 0}, plane,
+             taps);
+    convolve(scratch.filtered.data(), scratch.lattice.data(),
+             {nodes, nodes * rowLength, plane, nodes * rowLength}, rowLength, taps);
+    const auto pitch = static_cast<std::size_t>(mPitch);
+    mCoefficients.assign(nodes * nodes * pitch, 0.0F);
+    convolve(scratch.lattice.data(), mCoefficients.data(),
+             {nodes * nodes, nodes, rowLength, pitch}, 1, taps);
 }
 
 double CoefficientBrick::value(const SpreadingKernel& kernel, const openvdb::Vec3d& local) const {
-    if (mCoefficients.empty()) return mConstant;
-    std::array<AxisWeights, 3> axes;
-    for (int a = 0; a < 3; ++a) axes[a] = axisWeights(kernel, local[a], false);
-    const std::size_t row = static_cast<std::size_t>(axes[0].first) * mNodes + axes[1].first;
-    const float* corner = &mCoefficients[row * mPitch + axes[2].first];
-    return kernel.paddedWidth() == 8 ? sumValue<8>(corner, kernel.width(), mNodes, mPitch, axes)
-                                     : sumValue<16>(corner, kernel.width(), mNodes, mPitch, axes);
+    return mCoefficients.empty() ? mConstant : sumValue(nodes(), kernel, local);
 }
 
 DensityAt CoefficientBrick::evaluate(const SpreadingKernel& kernel,
                                      const openvdb::Vec3d& local) const {
     if (mCoefficients.empty()) return {mConstant, {0, 0, 0}};
-    std::array<AxisWeights, 3> axes;
-    for (int a = 0; a < 3; ++a) axes[a] = axisWeights(kernel, local[a], true);
-    const std::size_t row = static_cast<std::size_t>(axes[0].first) * mNodes + axes[1].first;
-    const float* corner = &mCoefficients[row * mPitch + axes[2].first];
-    return kernel.paddedWidth() == 8
-               ? sumEvaluate<8>(corner, kernel.width(), mNodes, mPitch, axes)
-               : sumEvaluate<16>(corner, kernel.width(), mNodes, mPitch, axes);
+    return sumGradient(nodes(), kernel, local);
+}
+
+DensityExpansion CoefficientBrick::expand(const SpreadingKernel& kernel,
+                                          const openvdb::Vec3d& local) const {
+    if (mCoefficients.empty()) return {mConstant, {0, 0, 0}, openvdb::Mat3d::zero()};
+    return sumHessian(nodes(), kernel, local);
 }
 
 }  // namespace bandvox

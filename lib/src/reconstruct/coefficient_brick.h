@@ -1,5 +1,6 @@
 #pragma once
 
+#include "reconstruct/brick_sums.h"
 #include "reconstruct/interpolation_design.h"
 
 #include <bandvox/reconstruct/reconstruction.h>
@@ -32,10 +33,15 @@ class CoefficientBrick {
     /// The density and its gradient there.
     DensityAt evaluate(const SpreadingKernel& kernel, const openvdb::Vec3d& local) const;
 
+    /// The density, its gradient and its Hessian there.
+    DensityExpansion expand(const SpreadingKernel& kernel, const openvdb::Vec3d& local) const;
+
     /// Bytes that a brick takes at most.
     static std::size_t bytes(const SpreadingKernel& kernel);
 
   private:
+    BrickNodes nodes() const { return {mCoefficients.data(), mNodes, mPitch}; }
+
     int mNodes;                        // along x and y
     int mPitch;                        // along z, with room for the kernel's padding
     float mConstant = 0;               // of a brick without coefficients

@@ -5,9 +5,11 @@
 #include <bandvox/core/error.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <numbers>
-#include <optional>
 #include <string>
 
 namespace bandvox {
@@ -41,26 +43,39 @@ double frequency(int i) {
     return (i + 0.5) * kFrequencyStep;
 }
 
-KernelResponse kernelResponse(const SpreadingKernel& kernel) {
+// `transform` is ψ̂.
+KernelResponse kernelResponse(const std::function<double(double)>& transform) {
     KernelResponse response;
     for (int i = 0; i < kFrequencies; ++i) {
         double value = 0, gradient = 0;
         for (int m = 1; m <= kImages; ++m) {
             for (const double image : {frequency(i) - m, frequency(i) + m}) {
-                const double size = std::abs(kernel.transform(image));
+                const double size = std::abs(transform(image));
                 value += size;
                 gradient += std::abs(image) * size;
             }
         }
-        response.pass.push_back(kernel.transform(frequency(i)));
+        response.pass.push_back(transform(frequency(i)));
         response.imageValue.push_back(value);
         response.imageGradient.push_back(gradient);
     }
     for (int m = 1; m <= kImages; ++m) {
-        response.constantValue += 2 * std::abs(kernel.transform(m));
-        response.constantGradient += 4 * pi * m * std::abs(kernel.transform(m));
+        response.constantValue += 2 * std::abs(transform(m));
+        response.constantGradient += 4 * pi * m * std::abs(transform(m));
     }
     return response;
+}
+
+// cos 2πkq at frequency i.
+double cosine(int i, int q) {
+    // Frequencies are odd multiples of a quarter of a turn's 2·kFrequencies-th part.
+    constexpr int kPeriod = 4 * kFrequencies;
+    static const std::vector<double> table = [] {
+        std::vector<double> cosines(kPeriod);
+        for (int t = 0; t < kPeriod; ++t) cosines[t] = std::cos(2 * pi * t / kPeriod);
+        return cosines;
+    }();
+    return table[(2 * i + 1) * q % kPeriod];
 }
 
 // Solves a symmetric system in place by elimination with row exchanges; `rows` are augmented.
@@ -92,23 +107,17 @@ class PrefilterFit {
     // A(k) ψ̂(k) should be 1 and the images A(k) ψ̂(k + m) should vanish, weighted as they act
     // on the gradient of a half-space, whose spectrum is H(k); `noise` stands for what is on the
     // lattice at all frequencies besides.
-    PrefilterFit(const ExponentialFilter& filter, const KernelResponse& response, double noise)
-        : mNormal(kLongestPrefilter + 1, std::vector<double>(kLongestPrefilter + 1, 0.0)),
-          mRight(kLongestPrefilter + 1, 0.0) {
-        std::vector<double> basis(kLongestPrefilter + 1);
+    PrefilterFit(const ExponentialFilter& filter, const KernelResponse& response, double noise) {
         for (int i = 0; i < kFrequencies; ++i) {
             const double k = frequency(i);
             const double weight = filter(k) * filter(k) + noise * noise;
             const double pass = response.pass[i];
             const double image = response.imageGradient[i] / k;
-            for (int l = 0; l <= kLongestPrefilter; ++l) {
-                basis[l] = (l == 0 ? 1 : 2) * std::cos(2 * pi * k * l);
+            for (int q = 0; q <= 2 * kLongestPrefilter; ++q) {
+                mSquares[q] += weight * (pass * pass + image * image) * cosine(i, q);
             }
             for (int l = 0; l <= kLongestPrefilter; ++l) {
-                for (int m = 0; m <= kLongestPrefilter; ++m) {
-                    mNormal[l][m] += weight * (pass * pass + image * image) * basis[l] * basis[m];
-                }
-                mRight[l] += weight * pass * basis[l];
+                mRight[l] += weight * pass * basis(i, l);
             }
         }
     }
@@ -118,9 +127,13 @@ class PrefilterFit {
         const int n = reach + 1;
         std::vector<std::vector<double>> rows(n + 1, std::vector<double>(n + 2, 0.0));
         for (int l = 0; l < n; ++l) {
-            for (int m = 0; m < n; ++m) rows[l][m] = mNormal[l][m];
+            // Of two cosines, the product is half the sum of those of the sum and the difference.
+            for (int m = 0; m < n; ++m) {
+                rows[l][m] = (l == 0 ? 0.5 : 1) * (m == 0 ? 1 : 2) *
+                             (mSquares[l + m] + mSquares[std::abs(l - m)]);
+            }
             // A trace of the identity keeps the system regular where the noise is nothing.
-            rows[l][l] += 1e-15 * mNormal[0][0];
+            rows[l][l] += 1e-15 * mSquares[0];
             rows[l][n] = rows[n][l] = l == 0 ? 1 : 2;
             rows[l][n + 1] = mRight[l];
         }
@@ -131,8 +144,10 @@ class PrefilterFit {
     }
 
   private:
-    std::vector<std::vector<double>> mNormal;
-    std::vector<double> mRight;
+    static double basis(int i, int l) { return (l == 0 ? 1 : 2) * cosine(i, l); }
+
+    std::array<double, 2 * kLongestPrefilter + 1> mSquares{};  // Σ weight · cos 2πkq
+    std::array<double, kLongestPrefilter + 1> mRight{};
 };
 
 struct InterpolationError {
@@ -151,7 +166,7 @@ InterpolationError interpolationError(const ExponentialFilter& filter,
         const double k = frequency(i);
         double a = prefilter[0];
         for (std::size_t l = 1; l < prefilter.size(); ++l) {
-            a += 2 * prefilter[l] * std::cos(2 * pi * k * static_cast<double>(l));
+            a += 2 * prefilter[l] * cosine(i, static_cast<int>(l));
         }
         const double missed = std::abs(a * response.pass[i] - 1);
         const double weight = 2 * filter(k) * kFrequencyStep;
@@ -167,23 +182,24 @@ InterpolationError interpolationError(const ExponentialFilter& filter,
 }
 
 struct KernelChoice {
-    SpreadingKernel kernel;
+    double beta = 0;
     KernelResponse response;
-    double error;
+    double error = std::numeric_limits<double>::infinity();
 };
 
 // The best kernel of a width, under the longest prefilter. Its β puts the edge of ψ̂'s main lobe
 // on the first image of a frequency; which one depends on how much the filter leaves there.
 KernelChoice bestKernel(const ExponentialFilter& filter, int width, double noise) {
-    std::optional<KernelChoice> best;
+    KernelChoice best;
     for (double edge = 0.1; edge < 0.47; edge += 0.02) {
-        const SpreadingKernel kernel(width, 0.985 * pi * width * (1 - edge));
-        KernelResponse response = kernelResponse(kernel);
+        const double beta = 0.985 * pi * width * (1 - edge);
+        KernelResponse response =
+            kernelResponse([&](double k) { return SpreadingKernel::transform(width, beta, k); });
         const auto prefilter = PrefilterFit(filter, response, noise).prefilter(kLongestPrefilter);
         const double error = interpolationError(filter, response, prefilter).worst();
-        if (!best || error < best->error) best = {kernel, std::move(response), error};
+        if (error < best.error) best = {beta, std::move(response), error};
     }
-    return *best;
+    return best;
 }
 
 }  // namespace
@@ -209,7 +225,8 @@ InterpolationDesign designInterpolation(const ExponentialFilter& filter, double 
             std::vector<double> prefilter = fit.prefilter(reach);
             const InterpolationError error = interpolationError(filter, choice.response, prefilter);
             if (error.worst() <= tolerance) {
-                return {choice.kernel, std::move(prefilter), error.value, error.gradient};
+                return {SpreadingKernel(width, choice.beta), std::move(prefilter), error.value,
+                        error.gradient};
             }
         }
     }

@@ -185,6 +185,40 @@ Ray Camera::ray(double x, double y) const {
     return {mEye, (mForward + offset).unit()};
 }
 
+openvdb::Vec2d Camera::project(const openvdb::Vec3d& point) const {
+    const openvdb::Vec3d offset = point - mEye;
+    const double scale =
+        mProjection == CameraOptions::Projection::Orthographic ? 1 : 1 / offset.dot(mForward);
+    return {0.5 * mPixelsWide * (1 + scale * offset.dot(mRight) / mHalfWidth),
+            0.5 * mPixelsHigh * (1 - scale * offset.dot(mUpward) / mHalfHeight)};
+}
+
+double Camera::pixelsPerLength(double depth) const {
+    const double scale = mProjection == CameraOptions::Projection::Orthographic ? 1 : 1 / depth;
+    return 0.5 * mPixelsWide * scale / mHalfWidth;
+}
+
+openvdb::math::Mat4d Camera::worldToCamera() const {
+    openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();
+    const openvdb::Vec3d axes[] = {mRight, mUpward, mForward};
+    for (int column = 0; column < 3; ++column) {
+        for (int row = 0; row < 3; ++row) matrix(row, column) = axes[column][row];
+        matrix(3, column) = -mEye.dot(axes[column]);
+    }
+    return matrix;
+}
+
+openvdb::math::Mat4d Camera::worldToScreen() const {
+    openvdb::math::Mat4d projection = openvdb::math::Mat4d::identity();
+    projection(0, 0) = 1 / mHalfWidth;
+    projection(1, 1) = 1 / mHalfHeight;
+    if (mProjection == CameraOptions::Projection::Perspective) {
+        projection(2, 3) = 1;
+        projection(3, 3) = 0;
+    }
+    return worldToCamera() * projection;
+}
+
 double Camera::depth(const openvdb::Vec3d& point) const {
     return (point - mEye).dot(mForward);
 }

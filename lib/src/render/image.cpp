@@ -1,20 +1,18 @@
+#include "core/image_library.h"
+#include "render/exr_file.h"
+
 #include <bandvox/core/atomic_file.h>
 #include <bandvox/core/error.h>
 #include <bandvox/render/image.h>
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <memory>
-#include <ostream>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace bandvox {
@@ -62,134 +60,36 @@ void requireComplete(const Image& image) {
     requireChannel(image.position, 3 * pixels, "position");
 }
 
-// IEC 61966-2-1, the transfer curve of sRGB.
-double srgbOfLinear(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
-
-std::uint8_t eightBits(double value) {
-    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0, 1.0)));
-}
-
-// Rows that are encoded at a time, whole blocks of every encoder. The picture is there once
-// already, and another copy of it could be more than the memory holds.
-constexpr int kStripRows = 64;
-
-// The pixels [begin, end) in sRGB with alpha beside it, four bytes a pixel.
-std::vector<std::uint8_t> srgbPixels(const Image& image, std::size_t begin, std::size_t end) {
-    std::vector<std::uint8_t> pixels;
-    pixels.reserve(4 * (end - begin));
-    for (std::size_t p = 4 * begin; p < 4 * end; p += 4) {
-        const double alpha = image.color[p + 3];
-        for (int c = 0; c < 3; ++c) {
-            const double linear = alpha > 0 ? image.color[p + c] / alpha : 0;
-            pixels.push_back(eightBits(srgbOfLinear(std::max(linear, 0.0))));
-        }
-        pixels.push_back(eightBits(alpha));
+// The metadata as text, for formats that know of nothing else.
+std::vector<std::pair<std::string, std::string>> textMetadata(const Image& image) {
+    std::vector<std::pair<std::string, std::string>> entries;
+    for (const auto& [name, value] : image.metadata) {
+        std::ostringstream text;
+        std::visit([&](const auto& v) { text << v; }, value);
+        entries.emplace_back(name, text.str());
     }
-    return pixels;
+    return entries;
 }
 
-// All channels of the pixels [begin, end) side by side, in the order of exrSpec.
-std::vector<float> dataPixels(const Image& image, std::size_t begin, std::size_t end) {
-    std::vector<float> data;
-    data.reserve(11 * (end - begin));
-    for (std::size_t p = begin; p < end; ++p) {
-        data.insert(data.end(), &image.color[4 * p], &image.color[4 * p] + 4);
-        data.push_back(image.depth[p]);
-        data.insert(data.end(), &image.normal[3 * p], &image.normal[3 * p] + 3);
-        data.insert(data.end(), &image.position[3 * p], &image.position[3 * p] + 3);
-    }
-    return data;
-}
-
-OIIO::ImageSpec pngSpec(const Image& image) {
-    OIIO::ImageSpec spec(image.width, image.height, 4, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    spec.attribute("oiio:UnassociatedAlpha", 1);
-    return spec;
-}
-
-OIIO::ImageSpec exrSpec(const Image& image) {
-    OIIO::ImageSpec spec(image.width, image.height, 11, OIIO::TypeDesc::FLOAT);
-    spec.channelnames = {"R", "G", "B", "A", "Z", "N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z"};
-    spec.channelformats.assign(11, OIIO::TypeDesc::FLOAT);
-    std::fill_n(spec.channelformats.begin(), 4, OIIO::TypeDesc::HALF);
-    spec.alpha_channel = 3;
-    spec.z_channel = 4;
-    spec.attribute("oiio:ColorSpace", "Linear");
-    spec.attribute("compression", "zip");
-    return spec;
-}
-
-// Takes what an encoder writes to a stream, and keeps what the disk has said about it.
-class StreamProxy final : public OIIO::Filesystem::IOProxy {
-  public:
-    explicit StreamProxy(std::ostream& stream) : IOProxy("", Write), mStream(stream) {}
-
-    const char* proxytype() const override { return "stream"; }
-    bool seek(std::int64_t offset) override {
-        m_pos = offset;
-        return noted(static_cast<bool>(mStream.seekp(offset)));
-    }
-    std::size_t write(const void* bytes, std::size_t size) override {
-        m_pos += static_cast<std::int64_t>(size);
-        return noted(static_cast<bool>(mStream.write(static_cast<const char*>(bytes),
-                                                     static_cast<std::streamsize>(size))))
-                   ? size
-                   : 0;
-    }
-    void flush() const override { mStream.flush(); }
-
-    // What went wrong first; 0 if nothing did.
-    int failure() const { return mFailure; }
-
-  private:
-    bool noted(bool good) {
-        if (!good && mFailure == 0) mFailure = errno;
-        return good;
-    }
-
-    std::ostream& mStream;
-    int mFailure = 0;
-};
-
-OIIO::ImageSpec specOf(const Image& image, bool png) {
-    OIIO::ImageSpec spec = png ? pngSpec(image) : exrSpec(image);
-    for (const auto& [name, value] : image.metadata) spec.attribute(name, value);
-    return spec;
-}
-
-bool writeStrips(OIIO::ImageOutput& output, const Image& image, bool png, Progress& progress) {
-    for (int top = 0; top < image.height; top += kStripRows) {
+WriteFailure writePng(std::ostream& stream, const Image& image, Progress& progress) {
+    PngRows png{image.width, image.height, textMetadata(image), {}};
+    png.rows = [&](int top, int bottom, std::vector<float>& pixels) {
         progress.throwIfInterrupted();
-        const int bottom = std::min(top + kStripRows, image.height);
-        const std::size_t begin = static_cast<std::size_t>(top) * image.width;
-        const std::size_t end = static_cast<std::size_t>(bottom) * image.width;
-        const bool good = png ? output.write_scanlines(top, bottom, 0, OIIO::TypeDesc::UINT8,
-                                                       srgbPixels(image, begin, end).data())
-                              : output.write_scanlines(top, bottom, 0, OIIO::TypeDesc::FLOAT,
-                                                       dataPixels(image, begin, end).data());
-        if (!good) return false;
-    }
-    return true;
+        const std::size_t rowLength = 4 * static_cast<std::size_t>(image.width);
+        for (std::size_t p = 0; p < (bottom - top) * rowLength; p += 4) {
+            const float* color = &image.color[top * rowLength + p];
+            const float alpha = color[3];
+            for (int c = 0; c < 3; ++c) {
+                pixels[p + c] = alpha > 0 ? std::max(color[c] / alpha, 0.0F) : 0;
+            }
+            pixels[p + 3] = alpha;
+        }
+    };
+    return imageLibrary().writePng(stream, png);
 }
 
-// Returns what went wrong, or nothing.
-std::string encode(const std::string& name, const Image& image, OIIO::Filesystem::IOProxy& proxy,
-                   Progress& progress) {
-    const bool png = extensionOf(name) == ".png";
-    OIIO::ImageSpec spec = specOf(image, png);
-    OIIO::Filesystem::IOProxy* pointer = &proxy;
-    spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &pointer);
-    const auto output = OIIO::ImageOutput::create(name, &proxy);
-    if (!output) return OIIO::geterror();
-    if (!output->supports("ioproxy")) return "OpenImageIO cannot write it through this library";
-    if (!output->open(name, spec) || !writeStrips(*output, image, png, progress) ||
-        !output->close()) {
-        return output->geterror();
-    }
-    return {};
+WriteFailure encode(std::ostream& stream, const Image& image, bool png, Progress& progress) {
+    return png ? writePng(stream, image, progress) : writeExr(stream, image, progress);
 }
 
 }  // namespace
@@ -203,29 +103,28 @@ void writeImage(AtomicFile& file, const Image& image, Progress& progress) {
     const std::filesystem::path& path = file.target();
     if (!isImageFile(path)) failExtension(path);
     requireComplete(image);
+    const bool png = extensionOf(path) == ".png";
     std::ofstream stream = file.open();
-    std::string failure;
-    int diskFailure = 0;
+    WriteFailure failure;
     if (file.inPlace()) {
         // An encoder goes back to fill in what it knows at the end.
-        std::vector<unsigned char> bytes;
-        OIIO::Filesystem::IOVecOutput memory(bytes);
-        failure = encode(path.string(), image, memory, progress);
-        stream.write(reinterpret_cast<const char*>(bytes.data()),
-                     static_cast<std::streamsize>(bytes.size()));
+        std::ostringstream memory;
+        failure = encode(memory, image, png, progress);
+        const std::string_view bytes = memory.view();
+        stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     } else {
-        StreamProxy proxy(stream);
-        failure = encode(path.string(), image, proxy, progress);
-        diskFailure = proxy.failure();
+        failure = encode(stream, image, png, progress);
     }
-    if (diskFailure == 0) {
+    if (failure.diskError == 0) {
         errno = 0;
         stream.close();
-        if (!stream) diskFailure = errno;
+        if (!stream) failure.diskError = errno;
     }
     // What the disk says comes before what an encoder makes of it.
-    if (diskFailure != 0) fail(path, std::strerror(diskFailure));
-    if (!failure.empty() || !stream) fail(path, failure.empty() ? "unknown failure" : failure);
+    if (failure.diskError != 0) fail(path, std::strerror(failure.diskError));
+    if (!failure.text.empty() || !stream) {
+        fail(path, failure.text.empty() ? "unknown failure" : failure.text);
+    }
 }
 
 void writeImage(const std::filesystem::path& path, const Image& image) {

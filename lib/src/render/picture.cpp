@@ -1,14 +1,19 @@
 #include "render/picture.h"
 
+#include "render/filter_places.h"
+
 #include <bandvox/core/memory.h>
 #include <bandvox/core/parallel.h>
 #include <bandvox/core/version.h>
+#include <bandvox/grid/density_grid.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <sstream>
 #include <string>
+#include <utility>
 
 namespace bandvox {
 
@@ -23,35 +28,69 @@ std::int64_t tilesAlong(int pixels) {
 
 }  // namespace
 
-std::vector<openvdb::Vec2d> samplePlaces(int samples) {
+std::vector<openvdb::Vec2d> samplePlaces(int samples, PixelFilter filter) {
+    const FilterPlaces places(filter);
     const int rows = std::max(1, static_cast<int>(std::sqrt(samples + 0.5)));
-    std::vector<openvdb::Vec2d> places;
+    std::vector<openvdb::Vec2d> all;
     for (int row = 0; row < rows; ++row) {
         const int columns = samples / rows + (row < samples % rows ? 1 : 0);
         for (int column = 0; column < columns; ++column) {
-            places.emplace_back((column + 0.5) / columns, (row + 0.5) / rows);
+            all.emplace_back(places((column + 0.5) / columns), places((row + 0.5) / rows));
         }
     }
-    return places;
+    return all;
 }
 
-Image blankImage(const RenderOptions& options, double iso, const openvdb::GridBase& grid) {
-    const std::size_t pixels = static_cast<std::size_t>(options.width) * options.height;
-    requireMemory(11.0 * sizeof(float) * static_cast<double>(pixels), "the picture");
+CropWindow drawnPart(const PictureOptions& options) {
+    return options.crop.value_or(CropWindow{0, 0, options.width, options.height});
+}
+
+Image blankImage(const PictureOptions& options) {
+    const CropWindow part = drawnPart(options);
     Image image;
-    image.width = options.width;
-    image.height = options.height;
+    image.width = part.right - part.left;
+    image.height = part.bottom - part.top;
+    const std::size_t pixels = static_cast<std::size_t>(image.width) * image.height;
+    requireMemory(11.0 * sizeof(float) * static_cast<double>(pixels), "the picture");
+    if (options.crop) {
+        image.left = part.left;
+        image.top = part.top;
+        image.fullWidth = options.width;
+        image.fullHeight = options.height;
+    }
     image.color.assign(4 * pixels, 0.0F);
     image.depth.assign(pixels, std::numeric_limits<float>::infinity());
     image.normal.assign(3 * pixels, 0.0F);
     image.position.assign(3 * pixels, 0.0F);
-    std::ostringstream isoText;
-    isoText << iso;
-    image.metadata = {{"Software", std::string("Bandvox ") + version()},
-                      {"bandvox_iso", isoText.str()}};
+    image.metadata.emplace_back("Software", std::string("Bandvox ") + version());
+    image.metadata.emplace_back("bandvox_samples", options.samples);
+    image.metadata.emplace_back("bandvox_seed", static_cast<int>(options.seed));
+    return image;
+}
+
+void describe(Image& image, const openvdb::GridBase& grid, double iso) {
+    image.metadata.emplace_back("bandvox_iso", iso);
     const std::string source = sourceOf(grid);
     if (!source.empty()) image.metadata.emplace_back("bandvox_source", source);
-    return image;
+}
+
+void describe(Image& image, const PictureOptions& options, const Camera& camera) {
+    const bool perspective = camera.projection() == CameraOptions::Projection::Perspective;
+    image.metadata.emplace_back("bandvox_camera",
+                                std::string(perspective ? "perspective" : "orthographic"));
+    for (const auto& [name, v] : {std::pair{"bandvox_eye", camera.eye()},
+                                  std::pair{"bandvox_forward", camera.forward()},
+                                  std::pair{"bandvox_up", camera.upward()}}) {
+        std::ostringstream text;
+        text << std::setprecision(9) << v[0] << ',' << v[1] << ',' << v[2];
+        image.metadata.emplace_back(name, text.str());
+    }
+    if (perspective) {
+        image.metadata.emplace_back("bandvox_focal", options.camera.focal);
+        image.metadata.emplace_back("bandvox_aperture", options.camera.aperture);
+    }
+    image.metadata.emplace_back("worldToCamera", camera.worldToCamera());
+    image.metadata.emplace_back("worldToNDC", camera.worldToScreen());
 }
 
 void setSight(Image& image, std::size_t pixel, const Sight& sight) {
@@ -62,22 +101,22 @@ void setSight(Image& image, std::size_t pixel, const Sight& sight) {
     }
 }
 
-void setColor(Image& image, std::size_t pixel, const openvdb::Vec3d& light, int hits,
-              const RenderOptions& options) {
-    const double coverage = double(hits) / options.samples;
+void setColor(Image& image, std::size_t pixel, const openvdb::Vec3d& light, double hits,
+              const PictureOptions& options) {
+    const double coverage = hits / options.samples;
     openvdb::Vec3d color = light / options.samples;
     if (options.background) color += (1 - coverage) * *options.background;
     for (int c = 0; c < 3; ++c) image.color[4 * pixel + c] = static_cast<float>(color[c]);
     image.color[4 * pixel + 3] = options.background ? 1.0F : static_cast<float>(coverage);
 }
 
-RenderResult emptyPicture(const RenderOptions& options, double iso, const openvdb::GridBase& grid) {
+RenderResult emptyPicture(const PictureOptions& options) {
     RenderResult result;
-    result.image = blankImage(options, iso, grid);
+    result.image = blankImage(options);
     for (std::size_t i = 0; i < result.image.depth.size(); ++i) {
         setColor(result.image, i, openvdb::Vec3d(0.0), 0, options);
     }
-    result.rays = std::int64_t(options.width) * options.height * options.samples;
+    result.rays = static_cast<std::int64_t>(result.image.depth.size()) * options.samples;
     return result;
 }
 
@@ -96,16 +135,29 @@ openvdb::Vec3d Lighting::tone(double reflected) const {
     return mColor * (mAmbient + (1 - mAmbient) * reflected);
 }
 
-void forEachTile(int width, int height, Progress& progress,
+std::vector<PixelBox> tilesOf(int width, int height) {
+    std::vector<PixelBox> tiles;
+    for (int top = 0; top < height; top += kImageTile) {
+        for (int left = 0; left < width; left += kImageTile) {
+            tiles.push_back({left, top, std::min(left + kImageTile, width),
+                             std::min(top + kImageTile, height)});
+        }
+    }
+    return tiles;
+}
+
+void forEachTile(std::span<const PixelBox> tiles, Progress& progress,
                  const std::function<void(const PixelBox&)>& body) {
-    const std::int64_t across = tilesAlong(width);
-    parallelFor(tileCount(width, height), [&](std::int64_t tile) {
+    parallelFor(static_cast<std::int64_t>(tiles.size()), [&](std::int64_t tile) {
         progress.throwIfInterrupted();
-        const int left = static_cast<int>(tile % across) * kImageTile;
-        const int top = static_cast<int>(tile / across) * kImageTile;
-        body({left, top, std::min(left + kImageTile, width), std::min(top + kImageTile, height)});
+        body(tiles[tile]);
         progress.advance();
     });
+}
+
+void forEachTile(int width, int height, Progress& progress,
+                 const std::function<void(const PixelBox&)>& body) {
+    forEachTile(tilesOf(width, height), progress, body);
 }
 
 std::int64_t tileCount(int width, int height) {

@@ -10,19 +10,29 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace bandvox {
 
-/// Where in a pixel, [0, 1)², its lines of sight pass: rows of evenly spaced places.
-std::vector<openvdb::Vec2d> samplePlaces(int samples);
+/// Where the lines of sight of a pixel, [0, 1)², pass, or, under a filter that reaches farther, around
+/// it: rows of evenly spaced places, drawn closer where the filter weighs more.
+std::vector<openvdb::Vec2d> samplePlaces(int samples, PixelFilter filter = PixelFilter::Box);
 
-/// A picture of `grid` in which nothing is seen yet. Throws Error(ErrorKind::Memory) before
-/// allocating if it would not fit.
-Image blankImage(const RenderOptions& options, double iso, const openvdb::GridBase& grid);
+/// The part of the picture that is drawn: all of it, or the crop window.
+CropWindow drawnPart(const PictureOptions& options);
 
-/// The picture of a grid of which nothing is to be seen.
-RenderResult emptyPicture(const RenderOptions& options, double iso, const openvdb::GridBase& grid);
+/// A picture, or the part of it that is drawn, in which nothing is seen yet. Throws
+/// Error(ErrorKind::Memory) before allocating if it would not fit.
+Image blankImage(const PictureOptions& options);
+
+/// Says of a picture what it was made of and how: names after bandvox, and those that other
+/// programs look for.
+void describe(Image& image, const openvdb::GridBase& grid, double iso);
+void describe(Image& image, const PictureOptions& options, const Camera& camera);
+
+/// The picture of something of which nothing is to be seen.
+RenderResult emptyPicture(const PictureOptions& options);
 
 /// What a line of sight meets.
 struct Sight {
@@ -33,9 +43,10 @@ struct Sight {
 /// Sets what is seen at a pixel, but for its colour.
 void setSight(Image& image, std::size_t pixel, const Sight& sight);
 
-/// Sets a pixel's colour: `light` is the sum of its lines of sight, `hits` of which met something.
-void setColor(Image& image, std::size_t pixel, const openvdb::Vec3d& light, int hits,
-              const RenderOptions& options);
+/// Sets a pixel's colour: `light` is the sum of its lines of sight, `hits` of which met something,
+/// parts counted as such.
+void setColor(Image& image, std::size_t pixel, const openvdb::Vec3d& light, double hits,
+              const PictureOptions& options);
 
 /// How a surface is lit.
 class Lighting {
@@ -68,7 +79,12 @@ struct PixelBox {
     }
 };
 
-/// Calls `body` for each tile of a picture, in parallel; advances `progress` after each.
+/// The tiles of a picture.
+std::vector<PixelBox> tilesOf(int width, int height);
+
+/// Calls `body` for each tile, in parallel; advances `progress` after each.
+void forEachTile(std::span<const PixelBox> tiles, Progress& progress,
+                 const std::function<void(const PixelBox&)>& body);
 void forEachTile(int width, int height, Progress& progress,
                  const std::function<void(const PixelBox&)>& body);
 

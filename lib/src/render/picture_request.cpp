@@ -2,7 +2,9 @@
 
 #include <bandvox/core/error.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <string>
 
@@ -12,6 +14,8 @@ namespace {
 
 constexpr int kLargestSide = 65536;
 constexpr int kMostSamples = 4096;
+constexpr int kMostBounces = 64;
+constexpr int kMostObjects = 64;
 
 template <typename Value>
 void requireInRange(const char* what, Value found, Value lowest, Value highest) {
@@ -33,20 +37,102 @@ void failNotFinite(const openvdb::FloatGrid& grid) {
                                       "\" has values that are not finite; expected a density");
 }
 
-void requireValid(const RenderOptions& options) {
+void requireValid(const PictureOptions& options) {
     requireInRange("width, pixels,", options.width, 1, kLargestSide);
     requireInRange("height, pixels,", options.height, 1, kLargestSide);
     requireInRange("number of samples per pixel", options.samples, 1, kMostSamples);
+    requireInRange("tolerance of reading", options.tolerance, 1e-6, 0.1);
+    requireInRange("number of directions to gather", options.transport.gather, 0, kMostSamples);
+    requireInRange("number of bounces", options.transport.bounces, 0, kMostBounces);
+    requireInRange("depth of mirrors and glass", options.transport.depth, 0, kMostBounces);
+    requireInRange("step in volumes, voxels,", options.volumes.step, 0.05, 16.0);
+    requireInRange("distance to gather, world units,", options.transport.gatherDistance, 0.0,
+                   std::numeric_limits<double>::max());
+    requireInRange("time between previews, seconds,", options.previewSeconds, 0.0, 1e9);
+    if (options.transport.bounces > 0 && options.transport.gather == 0) {
+        throw Error(ErrorKind::Usage,
+                    "light bounces where it is gathered, and the number of directions to gather is "
+                    "0; expected 1 or more");
+    }
+    if (options.background) requireColor("background", *options.background);
+    if (options.crop) {
+        const CropWindow& crop = *options.crop;
+        if (!(crop.left >= 0 && crop.left < crop.right && crop.right <= options.width &&
+              crop.top >= 0 && crop.top < crop.bottom && crop.bottom <= options.height)) {
+            std::ostringstream message;
+            message << "the crop window is columns " << crop.left << " to " << crop.right
+                    << ", rows " << crop.top << " to " << crop.bottom
+                    << "; expected a part of the picture's " << options.width << " x "
+                    << options.height << " pixels";
+            throw Error(ErrorKind::Usage, message.str());
+        }
+    }
+    requireValid(options.camera);
+}
+
+void requireValid(const RenderOptions& options) {
+    requireValid(static_cast<const PictureOptions&>(options));
     requireInRange("ambient light", options.ambient, 0.0, 1.0);
     requireColor("color", options.color);
-    if (options.background) requireColor("background", *options.background);
-    requireValid(options.camera);
     const double light = options.light.length();
     if (!(light > 0) || !std::isfinite(light)) {
         std::ostringstream message;
         message << "the light comes from " << options.light << "; it must be a direction";
         throw Error(ErrorKind::Usage, message.str());
     }
+    if (options.shading != Shading::Spectral && options.crop) {
+        throw Error(ErrorKind::Usage,
+                    "a crop window goes with spectral shading only: the others look at pixels "
+                    "beside each other");
+    }
+}
+
+void requireValid(const Scene& scene) {
+    const auto objects = static_cast<int>(scene.objects.size());
+    if (objects < 1 || objects > kMostObjects) {
+        throw Error(ErrorKind::Usage, "a scene of " + std::to_string(objects) +
+                                          " objects; expected 1 to " +
+                                          std::to_string(kMostObjects));
+    }
+    for (const SceneObject& object : scene.objects) {
+        if (!object.grid) {
+            throw Error(ErrorKind::Input, "a picture needs a density grid, but got none");
+        }
+        const Material& material = object.material;
+        requireColor("color", material.color);
+        requireInRange("roughness", material.roughness, 0.0, 1.0);
+        requireInRange("reflectance", material.reflectance, 0.0, 1.0);
+        requireInRange("transparency", material.transparency, 0.0, 1.0);
+        requireInRange("refractive index", material.refractiveIndex, 1.0, 4.0);
+        requireInRange("length of the tint, world units,", material.tintLength, 0.0, 1e30);
+        const Medium& medium = object.medium;
+        for (int c = 0; c < 3; ++c) {
+            requireInRange("color of a volume", medium.color[c], 0.0, 1.0);
+        }
+        requireColor("emission of a volume", medium.emission);
+        requireInRange("extinction of a volume, per world unit,", medium.extinction, 0.0, 1e30);
+        requireInRange("anisotropy of a volume", medium.anisotropy, -0.999, 0.999);
+        requireInRange("glow of a volume", medium.glow, 0.0, 1e30);
+    }
+    for (const Light& light : scene.lights) {
+        requireColor("color of a light", light.color);
+        const bool isPoint = light.kind == Light::Kind::Point;
+        requireInRange(isPoint ? "radius of a light, world units," : "size of a light, degrees,",
+                       light.size, 0.0, isPoint ? 1e30 : 180.0);
+        const double length = light.place.length();
+        if (!std::isfinite(length) || (!isPoint && !(length > 0))) {
+            std::ostringstream message;
+            message << "a light comes from " << light.place << "; it must be a "
+                    << (isPoint ? "place" : "direction");
+            throw Error(ErrorKind::Usage, message.str());
+        }
+    }
+    requireColor("color of the environment", scene.environment.color);
+}
+
+double shortestVoxelSide(const openvdb::FloatGrid& grid) {
+    const openvdb::Vec3d size = grid.voxelSize();
+    return std::min({size[0], size[1], size[2]});
 }
 
 void requireDrawable(const openvdb::FloatGrid& grid) {
@@ -64,16 +150,22 @@ void requireDrawable(const openvdb::FloatGrid& grid) {
 }
 
 double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata>& metadata,
-             const RenderOptions& options) {
-    const double iso = options.iso.value_or(metadata ? metadata->iso : 0.5);
+             const std::optional<double>& asked) {
+    const double iso = asked.value_or(metadata ? metadata->iso : 0.5);
     if (!std::isfinite(iso) || !(iso > grid.background())) {
         std::ostringstream message;
-        const bool isStored = !options.iso && metadata;
+        const bool isStored = !asked && metadata;
         message << "the iso-value " << (isStored ? "stored in the grid " : "") << "is " << iso
                 << "; it must be above the grid's background, " << grid.background();
-        throw Error(options.iso ? ErrorKind::Usage : ErrorKind::Input, message.str());
+        throw Error(asked ? ErrorKind::Usage : ErrorKind::Input, message.str());
     }
     return iso;
+}
+
+bool needsFraming(const CameraOptions& camera) {
+    const bool isSized =
+        camera.projection == CameraOptions::Projection::Perspective || camera.frame > 0;
+    return !(camera.eye && camera.lookat && isSized);
 }
 
 std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid) {

@@ -19,10 +19,16 @@ void requireDrawable(const openvdb::FloatGrid& grid);
 /// The density that is the surface. Throws unless it is above the background:
 /// Error(ErrorKind::Usage) if it comes from the options, Error(ErrorKind::Input) otherwise.
 double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata>& metadata,
-             const RenderOptions& options);
+             const std::optional<double>& iso);
+
+/// The shortest side of a voxel, world units.
+double shortestVoxelSide(const openvdb::FloatGrid& grid);
 
 /// The box of the active voxels, world units. Throws Error(ErrorKind::Input) if it is not finite.
 openvdb::BBoxd worldBox(const openvdb::FloatGrid& grid);
+
+/// False if the options define a view whatever is to be seen.
+bool needsFraming(const CameraOptions& camera);
 
 /// The corners of what is active, node by node, world units: points to frame in a picture.
 std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid);

@@ -10,12 +10,19 @@ namespace {
 
 // Voxels.
 constexpr double kShortestStep = 0.25;
+// A step of Newton's method as short as this ends within 1e-5 of the root.
+constexpr double kLastRootStep = 3e-4;
 constexpr double kRootError = 1e-5;
+// From a place to the nearest node.
+const double kFarthestNode = 0.5 * std::sqrt(3.0);
 
-// A root takes about ten; more than this only if the density is no smooth function.
-constexpr int kMostRootSteps = 200;
+// A root takes about three; more than this only if the density is no smooth function.
+constexpr int kMostRootSteps = 100;
 
-// A place on the ray and how far the density there is above iso.
+// Inside a solid steps have no bound that holds for all densities.
+constexpr double kInnerStep = 0.5;
+
+// A place on the ray and how far the density there is above iso, or, on the way out, below.
 struct Sample {
     double t;
     double above;
@@ -28,47 +35,72 @@ double parabolaTop(const Sample& a, const Sample& b, const Sample& c) {
     return b.t - 0.5 * ((b.t - a.t) * left - (b.t - c.t) * right) / (left - right);
 }
 
-// One line of sight on its way through the blocks.
+// What a march goes through.
+struct Field {
+    DensityProbe& density;
+    double iso;
+    const ClearDistance& clear;
+    const openvdb::FloatGrid* lattice;
+};
+
+// One line of sight on its way through the blocks, into the solid (side 1) or out of it (side -1).
 class March {
   public:
     // The line of sight begins at `earliest`, which is not positive.
-    March(const Ray& ray, double earliest, DensityProbe& density, double iso,
-          const ClearDistance& clear)
+    March(const Ray& ray, double earliest, const Field& field, int side)
         : mRay(ray),
           mEarliest(earliest),
-          mDensity(density),
-          mIso(iso),
-          mClear(clear),
-          mVoxel(1 / ray.direction.length()) {}
+          mField(field),
+          mSide(side),
+          mVoxel(1 / ray.direction.length()) {
+        if (field.lattice && side > 0) mNodes.emplace(field.lattice->tree());
+    }
 
     // Marches on through [t0, t1]. True once the surface is found.
     bool through(double t0, double t1) {
-        if (mSamples == 0 || t0 > mLast.t) {
-            // Between blocks there is no surface: start afresh.
-            mSamples = 0;
-            if (arrive(at(t0))) return true;
+        // Between blocks there is no surface: start afresh.
+        if (t0 > mNext) mSamples = 0;
+        double t = std::max(t0, mNext);
+        while (t < t1) {
+            const double known = clearByNode(t);
+            double step = known;
+            if (known > kShortestStep) {
+                mSamples = 0;
+            } else {
+                if (arrive(at(t))) return true;
+                step = mSide > 0 ? std::max(kShortestStep, mField.clear(mLast.above)) : kInnerStep;
+            }
+            const double next = t + step * mVoxel;
+            if (!(next > t)) return false;
+            t = mNext = next;
         }
-        while (mLast.t < t1) {
-            const double step = std::max(kShortestStep, mClear(mLast.above)) * mVoxel;
-            const double next = mLast.t + step;
-            if (!(next > mLast.t)) return false;
-            if (arrive(at(next))) return true;
-        }
+        mNext = t;
         return false;
     }
 
-    RayHit hit() const {
-        return {mHit, mDensity.evaluate(mRay.origin + mHit * mRay.direction).gradient};
-    }
+    const RayHit& hit() const { return mHit; }
 
   private:
+    // How far the surface is at least, as the nearest node tells; 0 if it does not.
+    double clearByNode(double t) {
+        if (!mNodes) return 0;
+        const openvdb::Vec3d place = mRay.origin + t * mRay.direction;
+        const double above = mNodes->getValue(openvdb::Coord::round(place)) - mField.iso;
+        return above < 0 ? mField.clear(above) - kFarthestNode : 0;
+    }
+
     Sample at(double t) const {
-        return {t, mDensity.value(mRay.origin + t * mRay.direction) - mIso};
+        const double density = mField.density.value(mRay.origin + t * mRay.direction);
+        return {t, mSide * (density - mField.iso)};
     }
 
     bool arrive(const Sample& next) {
         if (next.above >= 0) {
-            mHit = mSamples > 0 ? root(mLast, next) : entry(next);
+            if (mSamples > 0) {
+                mHit = root(mLast, next);
+            } else {
+                enter(next);
+            }
             return true;
         }
         // A top between the samples may reach above iso although they do not: a silhouette.
@@ -85,51 +117,76 @@ class March {
         return false;
     }
 
-    // The ray is inside where its first block starts. If it was outside a voxel before, then the
+    // The ray is inside where it is first looked at. If it was outside a voxel before, then the
     // surface is between; else the ray starts inside.
-    double entry(const Sample& inside) const {
+    void enter(const Sample& inside) {
         const double before = std::max(inside.t - mVoxel, mEarliest);
-        if (before == inside.t) return inside.t;
-        const Sample outside = at(before);
-        return outside.above < 0 ? root(outside, inside) : before;
-    }
-
-    // Where the density rises to iso: regula falsi, Illinois variant, which keeps a bracket.
-    double root(Sample outside, Sample inside) const {
-        const double error = kRootError * mVoxel;
-        int side = 0;
-        for (int i = 0; i < kMostRootSteps && inside.t - outside.t > error; ++i) {
-            const double width = inside.t - outside.t;
-            const double secant =
-                outside.t + width * outside.above / (outside.above - inside.above);
-            // Step a little over the root, so that the other end follows.
-            const double guard = std::min(0.5 * error, 0.25 * width);
-            const double place = std::clamp(secant, outside.t + guard, inside.t - guard);
-            if (!(place > outside.t && place < inside.t)) break;
-            const Sample next = at(place);
-            if (next.above < 0) {
-                outside = next;
-                if (side < 0) inside.above *= 0.5;
-                side = -1;
-            } else {
-                inside = next;
-                if (side > 0) outside.above *= 0.5;
-                side = 1;
+        if (before < inside.t) {
+            const Sample outside = at(before);
+            if (outside.above < 0) {
+                mHit = root(outside, inside);
+                return;
             }
         }
-        return 0.5 * (outside.t + inside.t);
+        mHit = {before, mField.density.evaluate(mRay.origin + before * mRay.direction).gradient};
+    }
+
+    // Where the density rises to iso: Newton's method, kept in a bracket.
+    RayHit root(Sample outside, Sample inside) const {
+        const double width = inside.t - outside.t;
+        double t = outside.t + width * outside.above / (outside.above - inside.above);
+        double lastStep = width;
+        RayHit hit{inside.t, openvdb::Vec3d(0.0)};
+        for (int i = 0; i < kMostRootSteps; ++i) {
+            const DensityAt found = mField.density.evaluate(mRay.origin + t * mRay.direction);
+            const double above = mSide * (found.value - mField.iso);
+            const double slope = mSide * found.gradient.dot(mRay.direction);
+            hit = {t, found.gradient};
+            (above < 0 ? outside : inside) = {t, above};
+            double next = t - above / slope;
+            const bool converges = slope > 0 && std::abs(next - t) < 0.5 * lastStep;
+            if (converges && std::abs(next - t) <= kLastRootStep * mVoxel) {
+                hit.t = std::clamp(next, outside.t, inside.t);
+                break;
+            }
+            if (!converges || !(next > outside.t && next < inside.t)) {
+                next = 0.5 * (outside.t + inside.t);
+            }
+            if (inside.t - outside.t <= kRootError * mVoxel) break;
+            lastStep = std::abs(next - t);
+            t = next;
+        }
+        return hit;
     }
 
     const Ray& mRay;
     double mEarliest;
-    DensityProbe& mDensity;
-    double mIso;
-    const ClearDistance& mClear;
+    const Field& mField;
+    int mSide;
     double mVoxel;  // a voxel's length, in lengths of the direction
-    int mSamples = 0;
+    std::optional<openvdb::tree::ValueAccessor<const openvdb::FloatTree, false>> mNodes;
+    int mSamples = 0;  // taken one after another, up to mLast
     Sample mBefore{0, 0}, mLast{0, 0};
-    double mHit = 0;
+    double mNext = std::numeric_limits<double>::lowest();  // where to look next
+    RayHit mHit;
 };
+
+std::optional<RayHit> marchAlong(const Ray& ray, const SurfaceBlocks& blocks, const Field& field,
+                                 int side, double end) {
+    // Count t from where the blocks begin: seen from far away, steps would be lost in rounding.
+    const std::optional<double> start = blocks.entry(ray);
+    if (!start || *start > end) return std::nullopt;
+    const Ray near{ray.origin + *start * ray.direction, ray.direction};
+    March march(near, -*start, field, side);
+    bool found = false;
+    blocks.walk(near, end - *start,
+                [&](double t0, double t1) { return found = march.through(t0, t1); });
+    if (!found) return std::nullopt;
+    RayHit hit = march.hit();
+    hit.t += *start;
+    if (hit.t > end) return std::nullopt;
+    return hit;
+}
 
 }  // namespace
 
@@ -163,18 +220,13 @@ ClearDistance ClearDistance::ofGaussian(double iso, double cutoff, double densit
                          [&](double below) { return distanceFromFace(iso - below) - surface; });
 }
 
-std::optional<RayHit> RayMarch::firstHit(const Ray& ray, DensityProbe& density) const {
-    // Count t from where the blocks begin: seen from far away, steps would be lost in rounding.
-    const std::optional<double> start = mBlocks.entry(ray);
-    if (!start) return std::nullopt;
-    const Ray near{ray.origin + *start * ray.direction, ray.direction};
-    March march(near, -*start, density, mIso, mClear);
-    bool found = false;
-    mBlocks.walk(near, [&](double t0, double t1) { return found = march.through(t0, t1); });
-    if (!found) return std::nullopt;
-    RayHit hit = march.hit();
-    hit.t += *start;
-    return hit;
+std::optional<RayHit> RayMarch::firstHit(const Ray& ray, DensityProbe& density, double end) const {
+    return marchAlong(ray, mBlocks, {density, mIso, mClear, mLattice}, 1, end);
+}
+
+std::optional<RayHit> RayMarch::firstExit(const Ray& ray, DensityProbe& density,
+                                          double end) const {
+    return marchAlong(ray, mBlocks, {density, mIso, mClear, mLattice}, -1, end);
 }
 
 }  // namespace bandvox

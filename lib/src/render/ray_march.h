@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <optional>
 
 namespace bandvox {
@@ -51,21 +52,32 @@ class ClearDistance {
     std::array<float, kSteps + 1> mVoxels{};  // by density below iso, rounded down
 };
 
-/// Finds where lines of sight enter {density ≥ iso}.
+/// Finds where lines of sight enter and leave {density ≥ iso}. All in index coordinates, `t` in
+/// lengths of a ray's direction.
 class RayMarch {
   public:
-    /// Steps are as long as `clear` allows, but never shorter than a quarter of a voxel.
-    RayMarch(const SurfaceBlocks& blocks, double iso, const ClearDistance& clear)
-        : mBlocks(blocks), mIso(iso), mClear(clear) {}
+    /// Steps are as long as `clear` allows, but never shorter than a quarter of a voxel. `lattice`,
+    /// if given, holds the density at whole coordinates: then the density is asked for only where
+    /// the nearest node cannot tell that the surface is farther.
+    RayMarch(const SurfaceBlocks& blocks, double iso, const ClearDistance& clear,
+             const openvdb::FloatGrid* lattice = nullptr)
+        : mBlocks(blocks), mIso(iso), mClear(clear), mLattice(lattice) {}
 
-    /// The first place on a ray, in index coordinates, t ≥ 0, where the density rises to iso: its
-    /// origin if that is inside. Within 1e-5 voxels.
-    std::optional<RayHit> firstHit(const Ray& ray, DensityProbe& density) const;
+    /// The first place on a ray, 0 ≤ t ≤ `end`, where the density rises to iso: its origin if that
+    /// is inside. Within 1e-5 voxels.
+    std::optional<RayHit> firstHit(const Ray& ray, DensityProbe& density,
+                                   double end = std::numeric_limits<double>::max()) const;
+
+    /// The first place on a ray, t ≥ 0, where the density falls to iso: its origin if that is
+    /// outside. Nothing if it stays inside up to `end`.
+    std::optional<RayHit> firstExit(const Ray& ray, DensityProbe& density,
+                                    double end = std::numeric_limits<double>::max()) const;
 
   private:
     const SurfaceBlocks& mBlocks;
     double mIso;
     ClearDistance mClear;
+    const openvdb::FloatGrid* mLattice;
 };
 
 }  // namespace bandvox

@@ -2,9 +2,6 @@
 
 #include "render/examine_leaves.h"
 
-#include <openvdb/math/DDA.h>
-#include <openvdb/math/Ray.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,9 +14,6 @@ namespace {
 using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
 
-constexpr int kBlockLog2 = 3;
-constexpr int kBlockSide = 1 << kBlockLog2;
-
 // The surface may lie this many voxels beyond the outermost high value of the lattice.
 constexpr int kSurfaceMargin = 2;
 
@@ -28,13 +22,6 @@ struct HighLeaf {
     float maximum;
     bool finite = true;
 };
-
-using BlockRay = openvdb::math::Ray<double>;
-
-BlockRay inBlocks(const Ray& ray) {
-    return BlockRay(ray.origin / kBlockSide, ray.direction / kBlockSide, 0.0,
-                    std::numeric_limits<double>::max());
-}
 
 bool isFinite(float value) {
     constexpr float kLargest = 1e30F;
@@ -78,10 +65,7 @@ SurfaceBlocks::SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold)
         mark(tile.getBoundingBox());
     }
 
-    // Mask trees count whole tiles in; so does the box.
-    openvdb::CoordBBox blocks;
-    mBlocks.evalActiveVoxelBoundingBox(blocks);
-    mBox = openvdb::BBoxd(blocks.min().asVec3d(), blocks.max().offsetBy(1).asVec3d());
+    mBox = boxOfBlocks(mBlocks);
 }
 
 void SurfaceBlocks::mark(const openvdb::CoordBBox& voxels) {
@@ -96,26 +80,6 @@ std::optional<double> SurfaceBlocks::entry(const Ray& ray) const {
     BlockRay blockRay = inBlocks(ray);
     if (mBlocks.empty() || !blockRay.clip(mBox)) return std::nullopt;
     return blockRay.t0();
-}
-
-void SurfaceBlocks::walk(const Ray& ray, const std::function<bool(double, double)>& visit) const {
-    BlockRay blockRay = inBlocks(ray);
-    if (mBlocks.empty() || !blockRay.clip(mBox)) return;
-
-    // Step over the mask's leaves, and inside each over its blocks.
-    constexpr int kLeafLog2 = openvdb::MaskTree::LeafNodeType::LOG2DIM;
-    openvdb::tree::ValueAccessor<const openvdb::MaskTree, false> accessor(mBlocks);
-    openvdb::math::DDA<BlockRay, kLeafLog2> outer(blockRay);
-    do {
-        if (!accessor.probeConstLeaf(outer.voxel())) {
-            if (accessor.isValueOn(outer.voxel()) && visit(outer.time(), outer.next())) return;
-            continue;
-        }
-        openvdb::math::DDA<BlockRay, 0> inner(blockRay, outer.time(), outer.next());
-        do {
-            if (accessor.isValueOn(inner.voxel()) && visit(inner.time(), inner.next())) return;
-        } while (inner.step());
-    } while (outer.step());
 }
 
 }  // namespace bandvox

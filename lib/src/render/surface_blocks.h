@@ -1,10 +1,11 @@
 #pragma once
 
+#include "render/block_walk.h"
+
 #include <bandvox/render/camera.h>
 
 #include <openvdb/openvdb.h>
 
-#include <functional>
 #include <optional>
 
 namespace bandvox {
@@ -28,9 +29,14 @@ class SurfaceBlocks {
     /// The t ≥ 0 where a ray comes into the box of all blocks; nothing if it passes by.
     std::optional<double> entry(const Ray& ray) const;
 
-    /// Calls `visit(t0, t1)` for each block on the way of origin + t·direction, t ≥ 0, in order;
-    /// stops when it returns true. `direction` may have any length but 0.
-    void walk(const Ray& ray, const std::function<bool(double, double)>& visit) const;
+    /// Calls `visit(t0, t1)` for each block on the way of origin + t·direction, 0 ≤ t ≤ `end`, in
+    /// order; stops when it returns true. `direction` may have any length but 0.
+    template <typename Visitor>
+    void walk(const Ray& ray, double end, const Visitor& visit) const;
+
+    /// Calls `visit(box)` for each node of blocks, voxels, ends included.
+    template <typename Visitor>
+    void forEachBlock(const Visitor& visit) const;
 
   private:
     void mark(const openvdb::CoordBBox& voxels);
@@ -40,5 +46,21 @@ class SurfaceBlocks {
     double mMaximum;
     bool mFinite = true;
 };
+
+template <typename Visitor>
+void SurfaceBlocks::walk(const Ray& ray, double end, const Visitor& visit) const {
+    walkBlocks(mBlocks, mBox, ray, end,
+               [&](double t0, double t1, bool /*value*/) { return visit(t0, t1); });
+}
+
+template <typename Visitor>
+void SurfaceBlocks::forEachBlock(const Visitor& visit) const {
+    for (auto block = mBlocks.cbeginValueOn(); block; ++block) {
+        openvdb::CoordBBox box = block.getBoundingBox();
+        box.min() <<= kBlockLog2;
+        box.max() = (box.max().offsetBy(1) << kBlockLog2).offsetBy(-1);
+        visit(box);
+    }
+}
 
 }  // namespace bandvox

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace bandvox {
@@ -18,10 +19,6 @@ namespace {
 
 using FieldTree = openvdb::FloatTree;
 using FieldLeaf = FieldTree::LeafNodeType;
-
-// The eye cannot tell a finer reconstruction; a coarser one is no picture of the density.
-constexpr double kFinestTolerance = 1e-4;
-constexpr double kCoarsestTolerance = 0.1;
 
 // Of solids under a filter that does not ring a flat face is the steepest; others come close.
 constexpr double kSteepestMargin = 1.5;
@@ -126,16 +123,17 @@ ClearDistance clearDistance(const DrawableGrid& drawable, double maximum, double
 }
 
 // Memory for the reconstruction's bricks: what most pictures need, if the machine has it.
-std::size_t cacheBytes() {
+std::size_t cacheBytes(const PictureOptions& options) {
+    if (options.cacheBytes > 0) return options.cacheBytes;
     constexpr std::int64_t kLeast = std::int64_t(64) << 20, kMost = std::int64_t(2) << 30;
     return static_cast<std::size_t>(std::clamp(availableMemory() / 4, kLeast, kMost));
 }
 
-// Sharp filters keep more than can be read between the nodes to the finest tolerance: then read
-// them as well as can be.
-std::unique_ptr<Reconstruction> readLattice(const openvdb::FloatGrid::ConstPtr& grid,
-                                            const ExponentialFilter& filter, double tolerance) {
-    BrickReconstructionOptions options{filter, tolerance, cacheBytes()};
+// Sharp filters keep more than can be read between the nodes to a fine tolerance: then read them as
+// well as can be.
+std::unique_ptr<Reconstruction> readFiltered(const openvdb::FloatGrid::ConstPtr& grid,
+                                             BrickReconstructionOptions options) {
+    constexpr double kCoarsestTolerance = 0.1;
     for (;; options.tolerance *= 3) {
         try {
             options.tolerance = std::min(options.tolerance, kCoarsestTolerance);
@@ -150,34 +148,41 @@ std::unique_ptr<Reconstruction> readLattice(const openvdb::FloatGrid::ConstPtr& 
 
 }  // namespace
 
-DrawableGrid makeDrawable(const openvdb::FloatGrid::ConstPtr& grid, const RenderOptions& options) {
+DrawableGrid makeDrawable(const openvdb::FloatGrid::ConstPtr& grid,
+                          const std::optional<double>& iso) {
     requireDrawable(*grid);
     DrawableGrid drawable{grid, densityMetadata(*grid)};
     drawable.isLevelSet = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
     if (!drawable.isLevelSet) {
-        drawable.iso = isoOf(*grid, drawable.metadata, options);
+        drawable.iso = isoOf(*grid, drawable.metadata, iso);
         return drawable;
     }
     // Distances are negative inside.
     drawable.metadata.reset();
-    RenderOptions signs = options;
-    signs.iso = -options.iso.value_or(0);
     drawable.grid = opposite(*grid);
-    drawable.iso = isoOf(*drawable.grid, std::nullopt, signs);
+    drawable.iso = isoOf(*drawable.grid, std::nullopt, -iso.value_or(0));
     return drawable;
 }
 
-SurfaceField readSurface(const DrawableGrid& drawable, double maximum) {
+std::unique_ptr<Reconstruction> readLattice(const openvdb::FloatGrid::ConstPtr& grid,
+                                            const std::optional<DensityMetadata>& metadata,
+                                            const PictureOptions& options) {
+    if (!metadata) return makeSplineReconstruction(grid, cacheBytes(options));
+    return readFiltered(grid, {{metadata->order, metadata->cutoff},
+                               std::max(metadata->tolerance, options.tolerance),
+                               cacheBytes(options)});
+}
+
+SurfaceField readSurface(const DrawableGrid& drawable, double maximum,
+                         const PictureOptions& options) {
+    auto reconstruction = readLattice(drawable.grid, drawable.metadata, options);
     if (drawable.metadata) {
-        const ExponentialFilter filter{drawable.metadata->order, drawable.metadata->cutoff};
-        const double slope = faceGradient(filter);
-        return {readLattice(drawable.grid, filter,
-                            std::max(drawable.metadata->tolerance, kFinestTolerance)),
-                slope, clearDistance(drawable, maximum, slope)};
+        const double slope = faceGradient({drawable.metadata->order, drawable.metadata->cutoff});
+        return {std::move(reconstruction), slope, clearDistance(drawable, maximum, slope)};
     }
     const double step = largestStep(*drawable.grid);
     const double steepest = (drawable.isLevelSet ? kSplineMargin : kSplineSteepest) * step;
-    return {makeSplineReconstruction(drawable.grid, cacheBytes()), step,
+    return {std::move(reconstruction), step,
             ClearDistance::ofSlope(drawable.iso, drawable.grid->background(), steepest, 0)};
 }
 

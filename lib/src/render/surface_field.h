@@ -4,7 +4,7 @@
 
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/reconstruct/reconstruction.h>
-#include <bandvox/render/density_to_image.h>
+#include <bandvox/render/picture_options.h>
 
 #include <openvdb/openvdb.h>
 
@@ -21,9 +21,11 @@ struct DrawableGrid {
     bool isLevelSet = false;
 };
 
-/// Throws Error(ErrorKind::Input) for a grid that cannot be drawn, or whose stored iso-value is
-/// not above its background; Error(ErrorKind::Usage) for an iso-value of the options that is not.
-DrawableGrid makeDrawable(const openvdb::FloatGrid::ConstPtr& grid, const RenderOptions& options);
+/// `iso`: as asked for, if it was. Throws Error(ErrorKind::Input) for a grid that cannot be drawn, or
+/// whose stored iso-value is not above its background; Error(ErrorKind::Usage) for an iso-value
+/// asked for that is not.
+DrawableGrid makeDrawable(const openvdb::FloatGrid::ConstPtr& grid,
+                          const std::optional<double>& iso);
 
 /// How a grid is read between its nodes, and how far a line of sight may step.
 struct SurfaceField {
@@ -35,7 +37,14 @@ struct SurfaceField {
 /// What was band-limited by this library is read by the filter that it was made with, other grids
 /// by the cubic spline through their values. `maximum`: of the lattice, all of which is finite.
 /// Throws Error(ErrorKind::Input) if the filter leaves too much to be read.
-SurfaceField readSurface(const DrawableGrid& drawable, double maximum);
+SurfaceField readSurface(const DrawableGrid& drawable, double maximum,
+                         const PictureOptions& options);
+
+/// A lattice as a continuous field: by the filter that its metadata name, or else by the cubic
+/// spline. Throws Error(ErrorKind::Input) if the filter leaves too much to be read.
+std::unique_ptr<Reconstruction> readLattice(const openvdb::FloatGrid::ConstPtr& grid,
+                                            const std::optional<DensityMetadata>& metadata,
+                                            const PictureOptions& options);
 
 /// The lattice value beyond which the surface may be near: between the nodes the field can rise
 /// above them.

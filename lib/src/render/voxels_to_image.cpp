@@ -159,12 +159,14 @@ RenderResult voxelsToImage(const VoxelScene& scene, Progress& progress) {
     const RenderOptions& options = scene.options;
     const SolidVoxels solid(scene.grid, scene.iso);
     if (solid.empty()) {
-        if (options.allowEmpty) return emptyPicture(options, scene.iso, scene.grid);
+        if (options.allowEmpty) return emptyPicture(options);
         failEmpty(solid.maximum(), scene.iso);
     }
 
     RenderResult result;
-    result.image = blankImage(options, scene.iso, scene.grid);
+    result.image = blankImage(options);
+    describe(result.image, scene.grid, scene.iso);
+    describe(result.image, options, scene.camera);
     requireMemory(VoxelPicture::kBytesPerPixel * static_cast<double>(result.image.depth.size()),
                   "the picture");
     VoxelPicture picture(scene, solid, result.image);

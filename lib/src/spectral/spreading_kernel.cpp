@@ -1,4 +1,5 @@
 #include "core/words.h"
+#include "spectral/kernel_polynomials.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/spectral/spreading_kernel.h>
@@ -113,7 +114,11 @@ double SpreadingKernel::transform(double k) const {
         const double angle = pi * k;
         return std::abs(angle) < 1e-9 ? 1 : std::pow(std::sin(angle) / angle, 4);
     }
-    return kernelTransform(mWidth, mBeta, k) / sinhRatio(mBeta * mBeta);
+    return transform(mWidth, mBeta, k);
+}
+
+double SpreadingKernel::transform(int width, double beta, double k) {
+    return kernelTransform(width, beta, k) / sinhRatio(beta * beta);
 }
 
 void SpreadingKernel::fitPolynomials() {
@@ -134,55 +139,36 @@ void SpreadingKernel::fitPolynomials() {
         }
         if (error <= accepted || mDegree == kHighestDegree) break;
     }
-    mCoefficients.assign((mDegree + 1) * kPaddedWidth, 0.0F);
-    mDerivativeCoefficients.assign(mDegree * kPaddedWidth, 0.0F);
-    for (int j = 0; j < mWidth; ++j) {
-        for (int p = 0; p <= mDegree; ++p) {
-            mCoefficients[(mDegree - p) * kPaddedWidth + j] = static_cast<float>(powers[j][p]);
-            // d falls as x rises: dz/dx = -2.
-            if (p > 0) {
-                mDerivativeCoefficients[(mDegree - p) * kPaddedWidth + j] =
-                    static_cast<float>(-2 * p * powers[j][p]);
+    for (int order = 0; order < static_cast<int>(mCoefficients.size()); ++order) {
+        const int degree = mDegree - order;
+        std::vector<float>& coefficients = mCoefficients[order];
+        coefficients.assign((degree + 1) * kPaddedWidth, 0.0F);
+        for (int j = 0; j < mWidth; ++j) {
+            for (int p = 0; p <= degree; ++p) {
+                coefficients[(degree - p) * kPaddedWidth + j] = static_cast<float>(powers[j][p]);
             }
+            // Differentiate; d falls as x rises: dz/dx = -2.
+            for (int p = 0; p < degree; ++p) powers[j][p] = -2 * (p + 1) * powers[j][p + 1];
         }
     }
 }
 
-namespace {
-
-// Horner's rule for all nodes at once.
-template <int kLanes>
-void evaluateNodes(const float* coefficients, int degree, float z, float* values) {
-    float sum[kLanes];
-    for (int j = 0; j < kLanes; ++j) sum[j] = coefficients[j];
-    for (int p = 1; p <= degree; ++p) {
-        const float* row = coefficients + p * SpreadingKernel::kPaddedWidth;
-        for (int j = 0; j < kLanes; ++j) sum[j] = sum[j] * z + row[j];
-    }
-    for (int j = 0; j < kLanes; ++j) values[j] = sum[j];
-}
-
-}  // namespace
-
 int SpreadingKernel::weights(float x, float* weights) const {
-    const float left = x - 0.5F * static_cast<float>(mWidth);
-    const float first = std::ceil(left);
-    const float z = 2 * (first - left) - 1;
+    const NodePlace place = placeOfNodes(mWidth, x);
     if (paddedWidth() == 8) {
-        evaluateNodes<8>(mCoefficients.data(), mDegree, z, weights);
+        evaluateNodes<8>(mCoefficients[0].data(), mDegree, place.z, weights);
     } else {
-        evaluateNodes<16>(mCoefficients.data(), mDegree, z, weights);
+        evaluateNodes<16>(mCoefficients[0].data(), mDegree, place.z, weights);
     }
-    return static_cast<int>(first);
+    return place.first;
 }
 
 int SpreadingKernel::weights(float x, float* weights, float* derivatives) const {
-    const float left = x - 0.5F * static_cast<float>(mWidth);
-    const float z = 2 * (std::ceil(left) - left) - 1;
+    const NodePlace place = placeOfNodes(mWidth, x);
     if (paddedWidth() == 8) {
-        evaluateNodes<8>(mDerivativeCoefficients.data(), mDegree - 1, z, derivatives);
+        evaluateNodes<8>(mCoefficients[1].data(), mDegree - 1, place.z, derivatives);
     } else {
-        evaluateNodes<16>(mDerivativeCoefficients.data(), mDegree - 1, z, derivatives);
+        evaluateNodes<16>(mCoefficients[1].data(), mDegree - 1, place.z, derivatives);
     }
     return this->weights(x, weights);
 }

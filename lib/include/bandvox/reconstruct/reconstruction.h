@@ -1,6 +1,7 @@
 #pragma once
 
 #include <openvdb/Types.h>
+#include <openvdb/math/Mat3.h>
 
 #include <memory>
 
@@ -10,6 +11,13 @@ namespace bandvox {
 struct DensityAt {
     double value = 0;
     openvdb::Vec3d gradient{0, 0, 0};  ///< per voxel, along the index axes
+};
+
+/// A density to second order at one place.
+struct DensityExpansion {
+    double value = 0;
+    openvdb::Vec3d gradient{0, 0, 0};  ///< per voxel, along the index axes
+    openvdb::Mat3d hessian;            ///< per voxel², along the index axes; symmetric
 };
 
 /// Reads a Reconstruction for one thread at a time, and remembers what it needed last: for many
@@ -24,6 +32,9 @@ class DensityProbe {
 
     /// The density and its gradient at a place given in index coordinates.
     virtual DensityAt evaluate(const openvdb::Vec3d& index) = 0;
+
+    /// The density, its gradient and its Hessian at a place given in index coordinates.
+    virtual DensityExpansion expand(const openvdb::Vec3d& index) = 0;
 };
 
 /// The continuous density that a lattice of samples stands for. Safe to use from many threads,
@@ -38,6 +49,10 @@ class Reconstruction {
 
     /// The density and its gradient at a place given in index coordinates. Takes a lock.
     virtual DensityAt evaluate(const openvdb::Vec3d& index) const = 0;
+
+    /// The density, its gradient and its Hessian at a place given in index coordinates. Takes a
+    /// lock.
+    virtual DensityExpansion expand(const openvdb::Vec3d& index) const = 0;
 
     /// A reader for one thread, without a lock for each place.
     virtual std::unique_ptr<DensityProbe> probe() const = 0;

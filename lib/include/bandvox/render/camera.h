@@ -2,6 +2,7 @@
 
 #include <openvdb/Types.h>
 #include <openvdb/math/BBox.h>
+#include <openvdb/math/Mat4.h>
 
 #include <optional>
 #include <span>
@@ -50,6 +51,20 @@ class Camera {
     /// Distance of a world point from the plane through the eye, along the view.
     double depth(const openvdb::Vec3d& point) const;
 
+    /// The place of the picture where a world point is seen, in pixels from its top left corner.
+    /// Of points behind the eye of a perspective view it has no meaning.
+    openvdb::Vec2d project(const openvdb::Vec3d& point) const;
+
+    /// Pixels that a world length across the view takes up at this depth.
+    double pixelsPerLength(double depth) const;
+
+    /// Turns world points, rows of coordinates, into the camera's: x right, y up, z along the view.
+    openvdb::math::Mat4d worldToCamera() const;
+    /// Turns world points into the picture's: x and y from -1 to 1, from the lower left, z from 0 in
+    /// the eye's plane; under perspective to be divided by the fourth coordinate.
+    openvdb::math::Mat4d worldToScreen() const;
+
+    CameraOptions::Projection projection() const { return mProjection; }
     const openvdb::Vec3d& eye() const { return mEye; }
     const openvdb::Vec3d& forward() const { return mForward; }
     const openvdb::Vec3d& right() const { return mRight; }

@@ -2,33 +2,43 @@
 
 #include <bandvox/core/progress.h>
 
-#include <cstddef>
+#include <openvdb/Types.h>
+#include <openvdb/math/Mat4.h>
+
 #include <filesystem>
-#include <limits>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace bandvox {
 
 class AtomicFile;
 
+/// Something that is said of a picture. Matrices act on rows, as OpenVDB's and OpenEXR's do.
+using ImageAttribute = std::variant<std::string, int, double, openvdb::math::Mat4d>;
+
 /// A picture, and what was seen at each of its pixels. Rows from the top.
 struct Image {
     int width = 0;
     int height = 0;
+    int left = 0;        ///< of a picture that is a part of a larger one: its place there
+    int top = 0;         ///< the same
+    int fullWidth = 0;   ///< of the larger one; 0 if it is none
+    int fullHeight = 0;  ///< the same
     std::vector<float> color;     ///< [height][width][4] linear R G B, A; colour times coverage
     std::vector<float> depth;     ///< [height][width] world units along the view; inf where nothing
     std::vector<float> normal;    ///< [height][width][3] world, unit; 0 where nothing
     std::vector<float> position;  ///< [height][width][3] world; 0 where nothing
-    std::vector<std::pair<std::string, std::string>> metadata;
+    std::vector<std::pair<std::string, ImageAttribute>> metadata;
 };
 
 /// Extensions that writeImage takes, lower case with the dot.
 bool isImageFile(const std::filesystem::path& path);
 
-/// Writes a picture, whole or not at all. `.png`: 8-bit sRGB with alpha. `.exr`: half R G B A,
-/// and float Z, N.X N.Y N.Z, P.X P.Y P.Z.
+/// Writes a picture, whole or not at all. `.png`: 8-bit sRGB with alpha, by OpenImageIO's colour
+/// management. `.exr`: linear half R G B A, and float Z, N.X N.Y N.Z, P.X P.Y P.Z; of a part of a
+/// larger picture the data window, in that one's display window.
 /// Throws Error(ErrorKind::Runtime) if it cannot be written, Error(ErrorKind::Usage) for another
 /// extension.
 void writeImage(const std::filesystem::path& path, const Image& image);

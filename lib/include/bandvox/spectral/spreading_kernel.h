@@ -2,6 +2,7 @@
 
 #include <bandvox/spectral/exponential_filter.h>
 
+#include <array>
 #include <vector>
 
 namespace bandvox {
@@ -36,6 +37,8 @@ class SpreadingKernel {
     double derivative(double x) const;
     /// ψ̂(k), k in cycles per voxel.
     double transform(double k) const;
+    /// The same for the kernel with a closed transform of this width and β.
+    static double transform(int width, double beta, double k);
 
     /// The weights of the `width()` lattice nodes around a place: weights[j] = ψ(node_j - x),
     /// with node_j = first + j, and zeros from there up to `paddedWidth()` so that rows can be
@@ -51,9 +54,11 @@ class SpreadingKernel {
     static constexpr int kMaximumWidth = 12;
     static constexpr int kPaddedWidth = 16;
 
-    /// The polynomials behind `weights`, for loops that evaluate them in place: coefficient p
-    /// of node j at [p·kPaddedWidth + j], highest power first, in z = 2 (first - x + w/2) - 1.
-    const std::vector<float>& polynomials() const { return mCoefficients; }
+    /// The polynomials behind `weights` and of their derivatives with respect to x of this order,
+    /// 0 to 2, for loops that evaluate them in place: coefficient p of node j at
+    /// [p·kPaddedWidth + j], highest power first, in z = 2 (first - x + w/2) - 1. The degree is
+    /// polynomialDegree() - order.
+    const std::vector<float>& polynomials(int order = 0) const { return mCoefficients[order]; }
     int polynomialDegree() const { return mDegree; }
 
   private:
@@ -65,8 +70,7 @@ class SpreadingKernel {
     double mBeta;
     double mScale;                               // makes ψ̂(0) = 1
     int mDegree = 0;                             // of the polynomials
-    std::vector<float> mCoefficients;            // [mDegree + 1][kPaddedWidth], highest power first
-    std::vector<float> mDerivativeCoefficients;  // [mDegree][kPaddedWidth]
+    std::array<std::vector<float>, 3> mCoefficients;  // by order: [degree + 1][kPaddedWidth]
 };
 
 /// The largest error of the filtered density of a half-space when its boundary reaches the

@@ -1,0 +1,184 @@
+// Image files by OpenImageIO: a module beside the library, or a part of it where that is static.
+#include "core/image_library.h"
+
+#include <bandvox/core/error.h>
+
+#include <OpenImageIO/color.h>
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <ostream>
+
+namespace bandvox {
+
+namespace {
+
+// Rows that are encoded at a time. The picture is there once already, and another copy of it could
+// be more than the memory holds.
+constexpr int kStripRows = 64;
+
+// A picture may not be larger than this, pixels.
+constexpr std::int64_t kMostPixels = std::int64_t(1) << 30;
+
+// Takes what an encoder writes to a stream, and keeps what the disk has said about it.
+class StreamProxy final : public OIIO::Filesystem::IOProxy {
+  public:
+    explicit StreamProxy(std::ostream& stream) : IOProxy("", Write), mStream(stream) {}
+
+    const char* proxytype() const override { return "stream"; }
+    bool seek(std::int64_t offset) override {
+        m_pos = offset;
+        return noted(static_cast<bool>(mStream.seekp(offset)));
+    }
+    std::size_t write(const void* bytes, std::size_t size) override {
+        m_pos += static_cast<std::int64_t>(size);
+        return noted(static_cast<bool>(mStream.write(static_cast<const char*>(bytes),
+                                                     static_cast<std::streamsize>(size))))
+                   ? size
+                   : 0;
+    }
+    void flush() const override { mStream.flush(); }
+
+    // What went wrong first; 0 if nothing did.
+    int failure() const { return mFailure; }
+
+  private:
+    bool noted(bool good) {
+        if (!good && mFailure == 0) mFailure = errno;
+        return good;
+    }
+
+    std::ostream& mStream;
+    int mFailure = 0;
+};
+
+// From one colour space to another, if the configuration knows both.
+OIIO::ColorProcessorHandle colorProcessor(const char* from, const char* to) {
+    static const OIIO::ColorConfig config;
+    return config.createColorProcessor(from, to);
+}
+
+// Changes the colours of pixels in place; alpha stays.
+void convertColors(std::vector<float>& pixels, const OIIO::ImageSpec& spec, const char* from,
+                   const char* to) {
+    const OIIO::ColorProcessorHandle processor = colorProcessor(from, to);
+    if (!processor) {
+        throw Error(ErrorKind::Runtime,
+                    std::string("OpenImageIO's colour configuration (see the variable OCIO) has no "
+                                "way from ") +
+                        from + " to " + to);
+    }
+    OIIO::ImageBuf image(spec, pixels.data());
+    if (!OIIO::ImageBufAlgo::colorconvert(image, image, processor.get(), /*unpremult=*/false)) {
+        throw Error(ErrorKind::Runtime, image.geterror());
+    }
+}
+
+std::uint8_t eightBits(float value) {
+    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0F, 1.0F)));
+}
+
+bool writeStrips(OIIO::ImageOutput& output, const PngRows& image) {
+    std::vector<float> pixels;
+    std::vector<std::uint8_t> bytes;
+    for (int top = 0; top < image.height; top += kStripRows) {
+        const int bottom = std::min(top + kStripRows, image.height);
+        pixels.resize(4 * static_cast<std::size_t>(image.width) * (bottom - top));
+        image.rows(top, bottom, pixels);
+        OIIO::ImageSpec spec(image.width, bottom - top, 4, OIIO::TypeDesc::FLOAT);
+        convertColors(pixels, spec, "linear", "sRGB");
+        bytes.resize(pixels.size());
+        std::transform(pixels.begin(), pixels.end(), bytes.begin(), eightBits);
+        if (!output.write_scanlines(top, bottom, 0, OIIO::TypeDesc::UINT8, bytes.data())) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Returns what went wrong, or nothing.
+std::string encode(const PngRows& image, OIIO::Filesystem::IOProxy& proxy) {
+    OIIO::ImageSpec spec(image.width, image.height, 4, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    for (const auto& [name, value] : image.metadata) spec.attribute(name, value);
+    OIIO::Filesystem::IOProxy* pointer = &proxy;
+    spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &pointer);
+    const auto output = OIIO::ImageOutput::create("picture.png", &proxy);
+    if (!output) return OIIO::geterror();
+    if (!output->supports("ioproxy")) return "OpenImageIO cannot write it through this library";
+    if (!output->open("picture.png", spec) || !writeStrips(*output, image) || !output->close()) {
+        return output->geterror();
+    }
+    return {};
+}
+
+class OpenImageIo final : public ImageLibrary {
+  public:
+    PixelArray read(const std::filesystem::path& path) const override {
+        std::error_code ignored;
+        if (!std::filesystem::exists(path, ignored)) fail(path.string(), "there is no such file");
+        return read(path.string(), nullptr);
+    }
+
+    PixelArray read(std::span<const std::byte> bytes, const std::string& name) const override {
+        OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
+        return read(name, &memory);
+    }
+
+    WriteFailure writePng(std::ostream& stream, const PngRows& image) const override {
+        StreamProxy proxy(stream);
+        const std::string failure = encode(image, proxy);
+        return {failure, proxy.failure()};
+    }
+
+  private:
+    [[noreturn]] static void fail(const std::string& name, const std::string& why) {
+        throw Error(ErrorKind::Input, name + ": " + why);
+    }
+
+    static PixelArray read(const std::string& name, OIIO::Filesystem::IOProxy* proxy) {
+        const auto input = OIIO::ImageInput::open(name, nullptr, proxy);
+        if (!input) fail(name, "it is no image that can be read (" + OIIO::geterror() + ")");
+        const OIIO::ImageSpec& spec = input->spec();
+        const std::int64_t pixels = std::int64_t(spec.width) * spec.height;
+        if (spec.depth > 1 || pixels < 1 || pixels > kMostPixels || spec.nchannels < 1) {
+            fail(name, "it holds " + std::to_string(spec.width) + " x " +
+                           std::to_string(spec.height) + " x " + std::to_string(spec.depth) +
+                           " pixels of " + std::to_string(spec.nchannels) +
+                           " channels; expected a picture");
+        }
+        PixelArray image{spec.width, spec.height, std::min(spec.nchannels, 4), {}};
+        image.values.resize(static_cast<std::size_t>(pixels) * image.channels);
+        if (!input->read_image(0, 0, 0, image.channels, OIIO::TypeDesc::FLOAT,
+                               image.values.data())) {
+            fail(name, "it cannot be read to its end (" + input->geterror() + ")");
+        }
+        // 8 and 16 bits that say nothing of their colours are sRGB.
+        const std::string space = spec.get_string_attribute("oiio:ColorSpace");
+        const bool isInteger = !spec.format.is_floating_point();
+        if (space == "sRGB" || (space.empty() && isInteger)) {
+            const OIIO::ImageSpec floats(image.width, image.height, image.channels,
+                                         OIIO::TypeDesc::FLOAT);
+            convertColors(image.values, floats, "sRGB", "linear");
+        }
+        return image;
+    }
+};
+
+}  // namespace
+
+extern "C" const ImageLibrary* bandvoxImageLibrary() {
+    static const OpenImageIo library;
+    return &library;
+}
+
+}  // namespace bandvox

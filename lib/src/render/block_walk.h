@@ -1,0 +1,68 @@
+#pragma once
+
+#include <bandvox/render/camera.h>
+
+#include <openvdb/math/BBox.h>
+#include <openvdb/math/DDA.h>
+#include <openvdb/math/Ray.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tree/ValueAccessor.h>
+
+#include <limits>
+#include <optional>
+
+// Trees that have one voxel for each block of 8³ voxels of a lattice.
+namespace bandvox {
+
+constexpr int kBlockLog2 = 3;
+constexpr int kBlockSide = 1 << kBlockLog2;
+
+using BlockRay = openvdb::math::Ray<double>;
+
+/// A ray of a lattice, from t = 0 to `end`, in blocks.
+inline BlockRay inBlocks(const Ray& ray, double end = std::numeric_limits<double>::max()) {
+    return BlockRay(ray.origin / kBlockSide, ray.direction / kBlockSide, 0.0, end);
+}
+
+/// The box of the active blocks of a tree, ends included, in blocks. Trees count whole nodes in; so
+/// does the box.
+template <typename BlockTree>
+openvdb::BBoxd boxOfBlocks(const BlockTree& blocks) {
+    openvdb::CoordBBox box;
+    blocks.evalActiveVoxelBoundingBox(box);
+    return {box.min().asVec3d(), box.max().offsetBy(1).asVec3d()};
+}
+
+/// Calls `visit(t0, t1, value)` for each active block on the way of origin + t·direction,
+/// 0 ≤ t ≤ `end`, in order; stops when it returns true. `box` holds all blocks.
+template <typename BlockTree, typename Visitor>
+void walkBlocks(const BlockTree& blocks, const openvdb::BBoxd& box, const Ray& ray, double end,
+                const Visitor& visit) {
+    BlockRay blockRay = inBlocks(ray, end);
+    if (blocks.empty() || !blockRay.clip(box)) return;
+
+    // Step over the tree's leaves, and inside each over its blocks.
+    using Leaf = typename BlockTree::LeafNodeType;
+    const openvdb::tree::ValueAccessor<const BlockTree, false> accessor(blocks);
+    typename BlockTree::ValueType value;
+    openvdb::math::DDA<BlockRay, Leaf::LOG2DIM> outer(blockRay);
+    do {
+        const Leaf* leaf = accessor.probeConstLeaf(outer.voxel());
+        if (!leaf) {
+            if (accessor.probeValue(outer.voxel(), value) &&
+                visit(outer.time(), outer.next(), value)) {
+                return;
+            }
+            continue;
+        }
+        openvdb::math::DDA<BlockRay, 0> inner(blockRay, outer.time(), outer.next());
+        do {
+            if (leaf->probeValue(inner.voxel(), value) &&
+                visit(inner.time(), inner.next(), value)) {
+                return;
+            }
+        } while (inner.step());
+    } while (outer.step());
+}
+
+}  // namespace bandvox

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "core/image_library.h"
+
+#include <bandvox/core/progress.h>
+#include <bandvox/render/image.h>
+
+#include <iosfwd>
+
+namespace bandvox {
+
+/// Writes a complete picture as OpenEXR, to a stream that is seekable. May throw
+/// Error(ErrorKind::Interrupted).
+WriteFailure writeExr(std::ostream& stream, const Image& image, Progress& progress);
+
+}  // namespace bandvox

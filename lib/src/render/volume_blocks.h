@@ -1,0 +1,40 @@
+#pragma once
+
+#include "render/block_walk.h"
+
+#include <bandvox/render/camera.h>
+
+#include <openvdb/openvdb.h>
+
+namespace bandvox {
+
+/// Where along a line of sight a density is more than nothing, and how much at most: for each block
+/// of 8³ voxels. All lengths in voxels, index coordinates.
+class VolumeBlocks {
+  public:
+    /// `isBandLimited`: the density between the nodes is little higher than at them. The background
+    /// of `grid` is 0.
+    VolumeBlocks(const openvdb::FloatGrid& grid, bool isBandLimited);
+
+    bool empty() const { return mBlocks.empty(); }
+    /// False if a value of the lattice is not finite, or so large that sums of them are not.
+    bool finite() const { return mFinite; }
+
+    /// Calls `visit(t0, t1, most)` for each block on the way of origin + t·direction,
+    /// 0 ≤ t ≤ `end`, in order; stops when it returns true.
+    template <typename Visitor>
+    void walk(const Ray& ray, double end, const Visitor& visit) const {
+        walkBlocks(mBlocks, mBox, ray, end, [&](double t0, double t1, float most) {
+            return visit(t0, t1, double(most));
+        });
+    }
+
+  private:
+    void raise(const openvdb::Coord& block, float most);
+
+    openvdb::FloatTree mBlocks;  // one voxel for each block
+    openvdb::BBoxd mBox;
+    bool mFinite = true;
+};
+
+}  // namespace bandvox

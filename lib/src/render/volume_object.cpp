@@ -1,0 +1,90 @@
+#include "render/volume_object.h"
+
+#include "render/blackbody.h"
+#include "render/picture_request.h"
+#include "render/surface_field.h"
+
+#include <bandvox/core/error.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace bandvox {
+
+using openvdb::Vec3d;
+
+namespace {
+
+// How much of light is left through the longest side of the box if nothing is said: e to minus
+// this.
+constexpr double kChosenDepth = 10;
+
+openvdb::Mat4d indexOfWorld(const openvdb::FloatGrid& grid) {
+    return grid.transform().baseMap()->getAffineMap()->getMat4().inverse();
+}
+
+double chooseExtinction(const openvdb::FloatGrid& grid, const Medium& medium) {
+    if (medium.extinction > 0) return medium.extinction;
+    const Vec3d size = worldBox(grid).extents();
+    return kChosenDepth / std::max({size[0], size[1], size[2]});
+}
+
+}  // namespace
+
+VolumeObject::VolumeObject(const SceneObject& object, const PictureOptions& options)
+    : mGrid(object.grid),
+      mMedium(object.medium),
+      mToIndex(indexOfWorld(*object.grid)),
+      mVoxel(shortestVoxelSide(*object.grid)) {
+    requireDrawable(*mGrid);
+    if (mGrid->getGridClass() == openvdb::GRID_LEVEL_SET) {
+        throw Error(ErrorKind::Input,
+                    "the grid \"" + mGrid->getName() +
+                        "\" is a level set, which holds distances; light goes through densities");
+    }
+    if (mGrid->background() != 0) {
+        throw Error(ErrorKind::Input, "the grid \"" + mGrid->getName() + "\" has a background of " +
+                                          std::to_string(mGrid->background()) +
+                                          "; expected 0, for a volume that ends");
+    }
+    mExtinction = chooseExtinction(*mGrid, mMedium);
+    const auto metadata = densityMetadata(*mGrid);
+    mBlocks = std::make_unique<VolumeBlocks>(*mGrid, metadata.has_value());
+    if (!mBlocks->finite()) failNotFinite(*mGrid);
+    mDensity = readLattice(mGrid, metadata, options);
+    if (object.colors) mColors.emplace(object.colors);
+    if (!object.temperatures) return;
+    requireDrawable(*object.temperatures);
+    mToTemperature = indexOfWorld(*object.temperatures);
+    mTemperature = readLattice(object.temperatures, densityMetadata(*object.temperatures), options);
+}
+
+bool VolumeObject::glows() const {
+    return mTemperature != nullptr || mMedium.emission.lengthSqr() > 0;
+}
+
+VolumeProbe VolumeObject::probe() const {
+    return {mDensity->probe(), mTemperature ? mTemperature->probe() : nullptr};
+}
+
+double VolumeObject::extinctionAt(const Vec3d& place, VolumeProbe& probe) const {
+    return mExtinction * std::max(probe.density->value(mToIndex.transform(place)), 0.0);
+}
+
+Vec3d VolumeObject::colorAt(const Vec3d& place) const {
+    if (!mColors) return mMedium.color;
+    const Vec3d color = mColors->at(place).value_or(mMedium.color);
+    return {std::clamp(color[0], 0.0, 1.0), std::clamp(color[1], 0.0, 1.0),
+            std::clamp(color[2], 0.0, 1.0)};
+}
+
+Vec3d VolumeObject::glowAt(const Vec3d& place, VolumeProbe& probe) const {
+    Vec3d glow = mMedium.emission;
+    if (probe.temperature) {
+        const double kelvin = probe.temperature->value(mToTemperature.transform(place));
+        glow += mMedium.glow * blackbodyColor(kelvin);
+    }
+    return glow;
+}
+
+}  // namespace bandvox
