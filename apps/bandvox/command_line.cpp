@@ -6,9 +6,6 @@
 
 #include <boost/program_options.hpp>
 
-#include <charconv>
-#include <cmath>
-
 namespace po = boost::program_options;
 
 namespace bandvox::app {
@@ -43,54 +40,7 @@ po::options_description describe(const CommandTable& table) {
                                 : "did you mean '--" + nearest + "'?"));
 }
 
-/// The whole of `text` as a finite number, or nothing.
-std::optional<double> parseNumber(std::string_view text) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
-        return std::nullopt;
-    }
-    return value;
-}
-
-std::optional<int> parseWhole(std::string_view text) {
-    int value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-    std::vector<std::string_view> parts;
-    for (;;) {
-        const std::size_t at = text.find(separator);
-        parts.push_back(text.substr(0, at));
-        if (at == std::string_view::npos) return parts;
-        text.remove_prefix(at + 1);
-    }
-}
-
-[[noreturn]] void throwValue(const std::string& option, const std::string& found,
-                             const std::string& expected) {
-    throwUsage("option --" + option + " is '" + found + "'; expected " + expected);
-}
-
 }  // namespace
-
-bool Range::contains(double value) const {
-    return (lowOpen ? value > low : value >= low) && (highOpen ? value < high : value <= high);
-}
-
-std::string Range::text() const {
-    constexpr double kUnbounded = std::numeric_limits<double>::max();
-    const bool hasLow = low > -kUnbounded;
-    const bool hasHigh = high < kUnbounded;
-    std::string words;
-    if (hasLow) words += (lowOpen ? " above " : " of at least ") + formatNumber(low);
-    if (hasLow && hasHigh) words += " and";
-    if (hasHigh) words += (highOpen ? " below " : " at most ") + formatNumber(high);
-    return words;
-}
 
 CommandLine::CommandLine(const CommandTable& table, const std::vector<std::string>& arguments)
     : mTable(table) {
@@ -111,20 +61,13 @@ CommandLine::CommandLine(const CommandTable& table, const std::vector<std::strin
         }
         for (const auto& [name, value] : values) {
             const auto* text = boost::any_cast<std::string>(&value.value());
-            mValues[name] = text ? *text : std::string();
+            set(name, text ? *text : std::string());
         }
     } catch (const po::unknown_option& error) {
         throwUnknownOption(table, error.get_option_name());
     } catch (const po::error& error) {
         throwUsage(error.what());
     }
-}
-
-std::optional<std::string> CommandLine::text(const std::string& option) const {
-    const auto found = mValues.find(option);
-    if (found == mValues.end()) return std::nullopt;
-    if (found->second.empty()) throwValue(option, "", "a value that is not empty");
-    return found->second;
 }
 
 std::string CommandLine::requiredText(const std::string& option) const {
@@ -137,75 +80,6 @@ std::string CommandLine::requiredText(const std::string& option) const {
                " --help'");
 }
 
-double CommandLine::number(const std::string& option, const Range& range, double fallback) const {
-    const auto given = text(option);
-    if (!given) return fallback;
-    const auto value = parseNumber(*given);
-    if (!value || !range.contains(*value)) throwValue(option, *given, "a number" + range.text());
-    return *value;
-}
-
-int CommandLine::wholeNumber(const std::string& option, int low, int high, int fallback) const {
-    const auto given = text(option);
-    if (!given) return fallback;
-    const auto value = parseWhole(*given);
-    if (!value || *value < low || *value > high) {
-        throwValue(option, *given,
-                   "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
-    }
-    return *value;
-}
-
-std::optional<openvdb::Vec3d> CommandLine::vector(const std::string& option,
-                                                  const Range& range) const {
-    const auto given = text(option);
-    if (!given) return std::nullopt;
-    const std::vector<std::string_view> parts = split(*given, ',');
-    openvdb::Vec3d vector(0.0);
-    bool good = parts.size() == 3;
-    for (int i = 0; good && i < 3; ++i) {
-        const auto value = parseNumber(parts[static_cast<std::size_t>(i)]);
-        good = value && range.contains(*value);
-        if (good) vector[i] = *value;
-    }
-    if (!good) {
-        throwValue(option, *given,
-                   "three numbers" + range.text() + " separated by commas, as in 0.1,0.2,0.3");
-    }
-    return vector;
-}
-
-std::optional<openvdb::Vec2i> CommandLine::size(const std::string& option, int low,
-                                                int high) const {
-    const auto given = text(option);
-    if (!given) return std::nullopt;
-    const std::vector<std::string_view> parts = split(*given, 'x');
-    std::optional<int> width, height;
-    if (parts.size() == 2) {
-        width = parseWhole(parts[0]);
-        height = parseWhole(parts[1]);
-    }
-    const auto good = [&](const std::optional<int>& side) {
-        return side && *side >= low && *side <= high;
-    };
-    if (!good(width) || !good(height)) {
-        throwValue(option, *given,
-                   "WIDTHxHEIGHT, each from " + std::to_string(low) + " to " +
-                       std::to_string(high) + ", as in 1920x1080");
-    }
-    return openvdb::Vec2i(*width, *height);
-}
-
-std::size_t CommandLine::choice(const std::string& option, const std::vector<std::string>& choices,
-                                std::size_t fallback) const {
-    const auto given = text(option);
-    if (!given) return fallback;
-    for (std::size_t i = 0; i < choices.size(); ++i) {
-        if (*given == choices[i]) return i;
-    }
-    throwValue(option, *given, "one of " + joined(choices, ", "));
-}
-
 void CommandLine::requirePositionals() const {
     std::vector<std::string> names;
     for (const PositionalEntry& positional : mTable.positionals) names.push_back(positional.name);
@@ -213,7 +87,8 @@ void CommandLine::requirePositionals() const {
     if (mPositionals.size() < names.size()) {
         throwUsage("'" + mTable.name + "' needs " + names[mPositionals.size()] + see);
     }
-    if (mPositionals.size() > names.size()) {
+    const bool mayRepeat = !names.empty() && mTable.positionals.back().repeated;
+    if (mPositionals.size() > names.size() && !mayRepeat) {
         throwUsage("'" + mTable.name + "' takes " + joined(names, " ") + " only; found '" +
                    mPositionals[names.size()] + "' after that" + see);
     }

@@ -51,8 +51,9 @@ bool isSameFile(const fs::path& a, const fs::path& b) {
 /// Throws Error(ErrorKind::Usage) if the output or the statistics are one of the files before.
 void requireDistinctFiles(const CommandLine& line) {
     std::vector<std::pair<std::string, fs::path>> files;
-    for (std::size_t i = 0; i < line.table().positionals.size(); ++i) {
-        files.emplace_back(line.table().positionals[i].name, line.positional(i));
+    const auto& table = line.table().positionals;
+    for (std::size_t i = 0; i < line.positionals().size(); ++i) {
+        files.emplace_back(table[std::min(i, table.size() - 1)].name, line.positional(i));
     }
     for (const std::string option : {"output", "stats"}) {
         const auto given = line.text(option);
@@ -115,18 +116,35 @@ void CommandRun::count(const std::string& name, const nlohmann::json& value) {
     (*mCounts)[name] = value;
 }
 
-void CommandRun::writeOutput(AtomicFile& output, const std::function<void(AtomicFile&)>& write) {
+std::string CommandRun::writeFile(AtomicFile& output,
+                                  const std::function<void(AtomicFile&)>& write) {
     mProgress.throwIfInterrupted();
     {
         const ProgressStage stage(mProgress, "write", 0);
         write(output);
     }
-    std::string size;
-    if (!output.inPlace()) {
-        const auto bytes = static_cast<std::int64_t>(fs::file_size(output.temporary()));
-        count("output_bytes", bytes);
-        size = ", " + formatBytes(bytes);
-    }
+    if (output.inPlace()) return {};
+    const auto bytes = static_cast<std::int64_t>(fs::file_size(output.temporary()));
+    mOutputBytes += bytes;
+    count("output_bytes", mOutputBytes);
+    return ", " + formatBytes(bytes);
+}
+
+void CommandRun::sayWritten(const AtomicFile& output, const std::string& size) {
+    const bool isStandardOutput = output.target() == "/dev/stdout";
+    say("wrote    " + (isStandardOutput ? "the standard output" : output.target().string()) + size +
+        ", after " + formatNumber(seconds(), 3) + " s");
+}
+
+void CommandRun::writePart(AtomicFile& output, const std::function<void(AtomicFile&)>& write) {
+    const std::string size = writeFile(output, write);
+    mProgress.throwIfInterrupted();
+    output.commit();
+    sayWritten(output, size);
+}
+
+void CommandRun::writeOutput(AtomicFile& output, const std::function<void(AtomicFile&)>& write) {
+    const std::string size = writeFile(output, write);
     // Both files are whole and on the disk before either of them gets its name, and the output
     // gets it last: there is none without the statistics that were asked for.
     output.complete();
@@ -137,9 +155,7 @@ void CommandRun::writeOutput(AtomicFile& output, const std::function<void(Atomic
     mProgress.throwIfInterrupted();
     if (mStatistics) mStatistics->commit();
     output.commit();
-    const bool isStandardOutput = output.target() == "/dev/stdout";
-    say("wrote    " + (isStandardOutput ? "the standard output" : output.target().string()) + size +
-        ", after " + formatNumber(seconds(), 3) + " s");
+    sayWritten(output, size);
 }
 
 void CommandRun::finish() {

@@ -10,6 +10,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -47,18 +48,27 @@ class CommandRun {
     /// statistics cannot be written. Then finishes. The last step of a command.
     void writeOutput(AtomicFile& output, const std::function<void(AtomicFile&)>& write);
 
-    /// Writes the statistics if they are asked for. The last step of a command without output.
+    /// The same for one output of several: commits it, and does not finish.
+    void writePart(AtomicFile& output, const std::function<void(AtomicFile&)>& write);
+
+    /// Writes the statistics if they are asked for. The last step of a command without output, or
+    /// with several.
     void finish();
 
-  private:
-    void writeStatistics();
+    /// Since the command began.
     double seconds() const;
+
+  private:
+    std::string writeFile(AtomicFile& output, const std::function<void(AtomicFile&)>& write);
+    void sayWritten(const AtomicFile& output, const std::string& size);
+    void writeStatistics();
 
     std::string mCommand;
     std::chrono::steady_clock::time_point mStart;
     bool mQuiet, mVerbose, mStrict;
     CommandProgress mProgress;
     ThreadLimit mThreads;
+    std::int64_t mOutputBytes = 0;
     std::unique_ptr<AtomicFile> mStatistics;
     std::unique_ptr<nlohmann::json> mCounts;
 };

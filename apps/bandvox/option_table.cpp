@@ -117,7 +117,9 @@ std::vector<OptionEntry> allOptions(const CommandTable& table) {
 
 std::string helpText(const CommandTable& table) {
     std::string out = "Usage: bandvox " + table.name;
-    for (const PositionalEntry& positional : table.positionals) out += ' ' + positional.name;
+    for (const PositionalEntry& positional : table.positionals) {
+        out += ' ' + positional.name + (positional.repeated ? "..." : "");
+    }
     out += " [OPTION]...\n\n";
     appendWrapped(out, table.detail, 0);
 

@@ -21,6 +21,7 @@ struct OptionEntry {
 struct PositionalEntry {
     std::string name;  ///< as the help shows it
     std::string help;
+    bool repeated = false;  ///< there may be more of it; of the last one
 };
 
 /// A command line that works, and what it does.
@@ -34,7 +35,7 @@ struct CommandTable {
     std::string name;
     std::string summary;                       ///< half a line, for the list of commands
     std::string detail;                        ///< a few sentences
-    std::vector<PositionalEntry> positionals;  ///< all of them required
+    std::vector<PositionalEntry> positionals;  ///< each of them at least once
     std::vector<OptionEntry> options;          ///< its own, without the shared ones
     std::vector<ExampleEntry> examples;
 };

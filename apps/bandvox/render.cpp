@@ -1,169 +1,196 @@
-// bandvox render: a density in a .vdb file to a picture.
+// bandvox render: densities in .vdb files to a picture, or to several.
 
 #include "command_run.h"
 #include "commands.h"
-#include "standard_streams.h"
-#include "vdb_input.h"
+#include "frame_pattern.h"
+#include "render_scene.h"
+#include "render_settings.h"
 #include "words.h"
 
 #include <bandvox/render/density_to_image.h>
 #include <bandvox/render/image.h>
+#include <bandvox/render/scene_to_image.h>
 #include <bandvox/render/shading.h>
+#include <bandvox/render/turntable.h>
 
 #include <nlohmann/json.hpp>
 
-#include <array>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 namespace bandvox::app {
 namespace {
 
-constexpr int kMostPixels = 65536;  // along a side
-constexpr int kMostSamples = 1024;
-const Range kPositive{.low = 0, .lowOpen = true};
-const Range kColor{.low = 0};
-const Range kPlace{.low = -1e30, .high = 1e30};  // the squares of more are not finite
+constexpr int kMostTurns = 100000;
 
 struct RenderRequest {
-    std::string input;
-    std::filesystem::path output;
-    std::optional<std::string> grid;
-    RenderOptions options;
+    std::string output;  // may hold a pattern for the number of a frame
+    SceneRequest scene;
+    PictureOptions picture;
+    Shading shading = Shading::Spectral;
+    bool previews = false;
+    int turns = 0;            // pictures of a turntable
+    std::vector<int> frames;  // empty of a single picture
 };
 
-CameraOptions parseCamera(const CommandLine& line) {
-    CameraOptions camera;
-    using Projection = CameraOptions::Projection;
-    camera.projection = std::array{
-        Projection::Perspective,
-        Projection::Orthographic}[line.choice("camera", {"perspective", "orthographic"}, 0)];
-    camera.eye = line.vector("eye", kPlace);
-    camera.lookat = line.vector("lookat", kPlace);
-    camera.up = line.vector("up", kPlace);
-    camera.from = line.vector("from", kPlace).value_or(camera.from);
-    camera.focal = line.number("focal", kPositive, camera.focal);
-    camera.aperture = line.number("aperture", kPositive, camera.aperture);
-    camera.frame = line.number("frame", {.low = 0}, camera.frame);
-    return camera;
+// Older shadings are there to compare them with: they draw one matt surface under one lamp.
+void requirePlain(const CommandLine& line, const RenderRequest& request) {
+    const std::vector<ObjectRequest>& objects = request.scene.objects;
+    const bool isPlain = objects.size() == 1 &&
+                         objects[0].object.kind == SceneObject::Kind::Surface &&
+                         request.scene.lights.size() == 1 && !request.scene.environment.map;
+    if (!isPlain) line.fail("shading", "spectral for anything but one surface under one lamp");
+}
+
+void readFrames(const CommandLine& line, RenderRequest& request) {
+    request.turns = line.wholeNumber("turntable", 1, kMostTurns, 0);
+    bool hasInputFrames = false;
+    for (const ObjectRequest& object : request.scene.objects) {
+        hasInputFrames = hasInputFrames || hasFrame(object.file);
+    }
+    if (const auto text = line.text("frames")) {
+        const auto range = parseFrames(*text);
+        if (!range) line.fail("frames", "frames as in 7, 1-100 or 1-100x2");
+        request.frames = range->numbers();
+    } else if (request.turns > 0) {
+        request.frames = FrameRange{1, request.turns, 1}.numbers();
+    }
+    if (hasInputFrames && request.frames.empty()) {
+        throw Error(ErrorKind::Usage, "an input has a place for the number of a frame; expected "
+                                      "--frames to say which");
+    }
+    const bool isSequence = request.frames.size() > 1 || request.turns > 0;
+    if (isSequence && !hasFrame(request.output)) {
+        throw Error(ErrorKind::Usage, "option --output is '" + request.output +
+                                          "'; expected a place for the number of a frame in it, "
+                                          "as in name.####.png");
+    }
+    if (request.turns > 0 && !request.frames.empty() && request.frames.back() > request.turns) {
+        line.fail("frames", "none beyond the " + std::to_string(request.turns) +
+                                " pictures of the turntable");
+    }
 }
 
 RenderRequest parseRender(const CommandLine& line) {
     RenderRequest request;
-    request.input = line.positional(0);
     request.output = line.requiredText("output");
     requireExtension(request.output, {".png", ".exr"});
-    request.grid = line.text("grid");
-
-    RenderOptions& options = request.options;
-    if (const auto size = line.size("res", 1, kMostPixels)) {
-        options.width = size->x();
-        options.height = size->y();
-    }
-    options.samples = line.wholeNumber("samples", 1, kMostSamples, options.samples);
-    options.camera = parseCamera(line);
-    options.shading = static_cast<Shading>(line.choice("shading", shadingNames(), 0));
-    if (line.has("iso")) options.iso = line.number("iso", {}, 0);
-    options.light = line.vector("light", kPlace).value_or(options.light);
-    options.color = line.vector("color", kColor).value_or(options.color);
-    options.ambient = line.number("ambient", {.low = 0, .high = 1}, options.ambient);
-    options.background = line.vector("background", kColor);
-    options.allowEmpty = line.has("allow-empty");
-    requireValid(options);
+    std::vector<std::string> names;
+    for (const OptionEntry& entry : pictureEntries()) names.push_back(entry.name);
+    request.scene = readScene(line, names);
+    request.picture = readPictureOptions(request.scene.picture);
+    request.previews = request.scene.picture.has("preview");
+    request.shading = static_cast<Shading>(line.choice("shading", shadingNames(), 0));
+    if (request.shading != Shading::Spectral) requirePlain(line, request);
+    requireValid(request.picture);
+    readFrames(line, request);
     return request;
 }
 
-std::string listed(const openvdb::GridPtrVec& grids) {
-    if (grids.empty()) return "no grids";
-    std::vector<std::string> names;
-    for (const auto& grid : grids) {
-        names.push_back("'" + grid->getName() + "' (" + grid->valueType() + ")");
-    }
-    return "the grids " + joined(names, ", ");
+RenderResult draw(const RenderRequest& request, const Scene& scene, const PictureOptions& picture,
+                  Progress& progress) {
+    if (request.shading == Shading::Spectral) return sceneToImage(scene, picture, progress);
+    RenderOptions options;
+    static_cast<PictureOptions&>(options) = picture;
+    options.shading = request.shading;
+    options.iso = scene.objects[0].iso;
+    options.color = scene.objects[0].material.color;
+    options.light = scene.lights[0].place;
+    options.ambient = scene.environment.color[0];
+    return densityToImage(scene.objects[0].grid, options, progress);
 }
 
-/// The grid that is asked for; without a name the first of floats named density, else the only
-/// one of floats.
-openvdb::FloatGrid::Ptr chooseGrid(const openvdb::GridPtrVec& grids,
-                                   const std::optional<std::string>& name,
-                                   const std::string& file) {
-    const std::string wanted = name.value_or("density");
-    openvdb::FloatGrid::Ptr only;
-    std::size_t floats = 0;
-    for (const auto& grid : grids) {
-        auto floatGrid = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
-        if (!floatGrid) continue;
-        if (grid->getName() == wanted) return floatGrid;
-        only = floatGrid;
-        ++floats;
+// What all pictures together took.
+struct Totals {
+    std::int64_t rays = 0, hits = 0;
+};
+
+Image drawFrame(CommandRun& run, const RenderRequest& request, const Scene& scene,
+                const PictureOptions& picture, const std::filesystem::path& output,
+                Totals& totals) {
+    PictureOptions options = picture;
+    if (request.previews) {
+        options.preview = [&](const Image& image) {
+            AtomicFile file(output);
+            writeImage(file, image, run.progress());
+            file.commit();
+        };
     }
-    if (!name && floats == 1) return only;
-    throw Error(ErrorKind::Input,
-                "'" + file + "' has " + listed(grids) + "; expected " +
-                    (name ? "a float grid '" + *name + "'"
-                          : "a float grid 'density', or one float grid only (--grid names one)"));
+    const double start = run.seconds();
+    RenderResult result = draw(request, scene, options, run.progress());
+    result.image.metadata.emplace_back("bandvox_seconds", run.seconds() - start);
+    run.say("drawn    " + std::to_string(result.image.width) + " x " +
+            std::to_string(result.image.height) + " pixels, " +
+            formatCount(result.rays, "line of sight", "lines of sight") + ", " +
+            formatCount(result.hits, "hit", "hits"));
+    totals.rays += result.rays;
+    totals.hits += result.hits;
+    run.count("rays", totals.rays);
+    run.count("hits", totals.hits);
+    return std::move(result.image);
+}
+
+void drawSequence(CommandRun& run, const RenderRequest& request) {
+    Totals totals;
+    std::optional<Scene> scene;
+    std::vector<CameraOptions> cameras;
+    bool hasInputFrames = false;
+    for (const ObjectRequest& object : request.scene.objects) {
+        hasInputFrames = hasInputFrames || hasFrame(object.file);
+    }
+    for (const int frame : request.frames) {
+        if (!scene || hasInputFrames) {
+            scene = loadScene(run, request.scene, frame);
+            if (request.turns > 0) cameras = turntable(*scene, request.picture, request.turns);
+        }
+        PictureOptions picture = request.picture;
+        if (request.turns > 0) picture.camera = cameras.at(static_cast<std::size_t>(frame - 1));
+        AtomicFile output(withFrame(request.output, frame));
+        const Image image = drawFrame(run, request, *scene, picture, output.target(), totals);
+        run.writePart(output, [&](AtomicFile& file) { writeImage(file, image, run.progress()); });
+    }
+    run.count("frames", request.frames.size());
+    run.finish();
 }
 
 }  // namespace
 
 const CommandTable& renderTable() {
     static const CommandTable table = [] {
-        const RenderOptions options;
-        const CameraOptions& camera = options.camera;
-        const auto vector = [](const openvdb::Vec3d& v) {
-            return formatNumber(v.x()) + "," + formatNumber(v.y()) + "," + formatNumber(v.z());
-        };
-        const std::string picture = "Picture";
-        const std::string view = "Camera";
-        const std::string look = "Surface and light";
+        std::vector<OptionEntry> options{
+            {"output", 'o', "FILE", "", "The .png or .exr file to write. Needed.", "Picture"}};
+        for (const auto& entries : {pictureEntries(), sceneEntries()}) {
+            options.insert(options.end(), entries.begin(), entries.end());
+        }
+        const std::string several = "Several pictures";
+        options.push_back({"turntable", 0, "N", "",
+                           "Go around the objects in N pictures. The output's name has a place for "
+                           "their numbers, #### or %04d.",
+                           several});
+        options.push_back({"frames", 0, "A-BxS", "all of a turntable",
+                           "Which pictures: 7, 1-100, 1-100x2. Inputs may have a place for the "
+                           "number, too.",
+                           several});
+        options.push_back({"shading", 0, "KIND", shadingNames().front(),
+                           joined(shadingNames(), ", ") +
+                               ": where normals come from. All but the first see voxels as cubes, "
+                               "show stripes, and are here for comparison.",
+                           "For comparison"});
         return CommandTable{
             "render",
-            "Draw the surface of a density (.vdb) as a picture (.png, .exr).",
-            "Draws the surface where the density is 0.5, or as given. Lines of sight are followed "
-            "to the band-limited density that the grid stands for, and the normal is its "
-            "gradient, so the picture shows no voxels. Densities and level sets of other programs "
-            "are read by the cubic spline through their values. An .exr also holds depth (Z), "
-            "normals (N) and positions (P).",
-            {{"INPUT", "A .vdb file; stdin.vdb is the standard input."}},
-            {
-                {"output", 'o', "FILE", "", "The .png or .exr file to write. Needed.", picture},
-                {"res", 0, "WxH",
-                 std::to_string(options.width) + "x" + std::to_string(options.height),
-                 "Width and height, pixels.", picture},
-                {"samples", 0, "N", std::to_string(options.samples), "Lines of sight per pixel.",
-                 picture},
-                {"background", 0, "R,G,B", "transparent", "Linear colour behind the object.",
-                 picture},
-                {"allow-empty", 0, "", "",
-                 "Write a picture even if nothing is seen, as of the empty frames of a sequence.",
-                 picture},
-                {"camera", 0, "KIND", "perspective", "perspective or orthographic.", view},
-                {"eye", 0, "X,Y,Z", "chosen", "Where the camera is, world.", view},
-                {"lookat", 0, "X,Y,Z", "the middle", "What it looks at, world.", view},
-                {"up", 0, "X,Y,Z", "0,1,0, or z along y", "What is up in the picture.", view},
-                {"from", 0, "X,Y,Z", vector(camera.from),
-                 "Direction from the object to the camera, if --eye is not given.", view},
-                {"focal", 0, "MM", formatNumber(camera.focal), "Focal length in mm (perspective).",
-                 view},
-                {"aperture", 0, "MM", formatNumber(camera.aperture),
-                 "Width of the film in mm (perspective).", view},
-                {"frame", 0, "W", "fits",
-                 "Width of the view in world units (orthographic); 0 fits the object.", view},
-                {"grid", 0, "NAME", "density, or the only one of floats", "Which grid to draw.",
-                 look},
-                {"iso", 0, "D", "as stored, else 0.5",
-                 "Density that is the surface; of a level set the distance, by default 0.", look},
-                {"shading", 0, "KIND", shadingNames().front(),
-                 joined(shadingNames(), ", ") +
-                     ": where normals come from. All but the first see voxels as cubes, show "
-                     "stripes, and are here for comparison.",
-                 look},
-                {"light", 0, "X,Y,Z", vector(options.light),
-                 "Direction to the light, along the camera's right, up and back.", look},
-                {"color", 0, "R,G,B", vector(options.color), "Linear colour of the surface.", look},
-                {"ambient", 0, "A", formatNumber(options.ambient), "Light from everywhere, 0 to 1.",
-                 look},
-            },
+            "Draw densities (.vdb) as a picture (.png, .exr).",
+            "Draws the surface where the density is 0.5, or as given, or the fog that it is. Lines "
+            "of sight are followed to the band-limited density that the grid stands for, and the "
+            "normal is its gradient, so the picture shows no voxels. Densities and level sets of "
+            "other programs are read by the cubic spline through their values. An .exr also holds "
+            "depth (Z), normals (N) and positions (P). A scene file is JSON: lists of objects and "
+            "lights, and groups environment, camera and picture, whose settings have the names of "
+            "the options below.",
+            {{"INPUT", "A .vdb file, as often as there are objects, or one .json file with a scene; "
+                       "stdin.vdb is the standard input.",
+              true}},
+            options,
             {
                 {"bandvox render bunny.vdb -o bunny.png",
                  "The whole object, on a transparent ground."},
@@ -171,6 +198,13 @@ const CommandTable& renderTable() {
                  "With depth, normals and positions, four lines of sight per pixel."},
                 {"bandvox render bunny.vdb -o front.png --camera orthographic --from 0,0,1",
                  "A parallel view along -z."},
+                {"bandvox render bunny.vdb ball.vdb -o two.png --color 0.8,0.7,0.6/1,1,1 "
+                 "--transparency 0/1 --shadows --gather 4 --samples 16",
+                 "Two objects, the second of glass, with shadows."},
+                {"bandvox render cloud.vdb -o cloud.png --mode volume --anisotropy 0.6",
+                 "A density as a cloud."},
+                {"bandvox render bunny.vdb -o bunny.####.png --turntable 36",
+                 "Once around it."},
             }};
     }();
     return table;
@@ -178,31 +212,13 @@ const CommandTable& renderTable() {
 
 void runRender(const CommandLine& line) {
     const RenderRequest request = parseRender(line);
-    requireVdb("render", request.input);
     CommandRun run(line);
+    if (!request.frames.empty()) return drawSequence(run, request);
     AtomicFile output(request.output);
-
-    openvdb::GridPtrVec grids;
-    {
-        const ProgressStage stage(run.progress(), "read", 0);
-        grids = readGrids(request.input);
-    }
-    const openvdb::FloatGrid::Ptr grid = chooseGrid(grids, request.grid, request.input);
-    grids.clear();
-    run.say("read     " + request.input + ": grid '" + grid->getName() + "', " +
-            formatCount(static_cast<std::int64_t>(grid->activeVoxelCount()), "active voxel",
-                        "active voxels"));
-
-    const RenderResult result = densityToImage(grid, request.options, run.progress());
-    run.say("drawn    " + std::to_string(result.image.width) + " x " +
-            std::to_string(result.image.height) + " pixels, " +
-            formatCount(result.rays, "line of sight", "lines of sight") + ", " +
-            formatCount(result.hits, "hit", "hits"));
-    run.count("rays", result.rays);
-    run.count("hits", result.hits);
-
-    run.writeOutput(output,
-                    [&](AtomicFile& file) { writeImage(file, result.image, run.progress()); });
+    const Scene scene = loadScene(run, request.scene, 0);
+    Totals totals;
+    const Image image = drawFrame(run, request, scene, request.picture, output.target(), totals);
+    run.writeOutput(output, [&](AtomicFile& file) { writeImage(file, image, run.progress()); });
 }
 
 }  // namespace bandvox::app

@@ -16,6 +16,10 @@ namespace {
 // What is left of light that nobody sees any more.
 constexpr double kNothingLeft = 1e-4;
 
+// Steps towards lamps, along which only the sum of the density counts: two voxels see all below
+// their frequency, half a cycle per voxel.
+constexpr double kLongSteps = 2;
+
 // The mean of the light from around.
 Vec3d meanOf(const Environment& environment) {
     if (!environment.map) return environment.color;
@@ -89,9 +93,10 @@ std::vector<MediumTransport::Interval> MediumTransport::intervals(const Ray& ray
 // density that is nothing at the ends of its interval, their sum is the integral: what the step
 // does not see is above the band.
 template <typename Visitor>
-void MediumTransport::forEachStep(const Ray& ray, double end, const Visitor& visit) const {
+void MediumTransport::forEachStep(const Ray& ray, double end, double step,
+                                  const Visitor& visit) const {
     for (const Interval& interval : intervals(ray, end)) {
-        const double steps = std::ceil((interval.end - interval.begin) / mStep);
+        const double steps = std::ceil((interval.end - interval.begin) / step);
         const double length = (interval.end - interval.begin) / steps;
         for (double i = 0; i < steps; ++i) {
             if (visit(interval.begin + (i + 0.5) * length, length)) return;
@@ -103,7 +108,7 @@ MediumLight MediumTransport::alongBySteps(const Ray& ray, double end, const Insi
                                           SampleStream& numbers, SceneProbes& probes) const {
     MediumLight result;
     double seen = 0;
-    forEachStep(ray, end, [&](double t, double length) {
+    forEachStep(ray, end, mStep, [&](double t, double length) {
         const Vec3d place = ray.origin + t * ray.direction;
         Vec3d light(0.0);
         double extinction = 0;
@@ -197,7 +202,7 @@ double MediumTransport::left(const Ray& ray, double end, SampleStream& numbers,
     if (mMethod == VolumeOptions::Method::Steps) {
         double depth = 0;
         const double deepest = -std::log(kNothingLeft);
-        forEachStep(ray, end, [&](double t, double length) {
+        forEachStep(ray, end, kLongSteps * mStep, [&](double t, double length) {
             const Vec3d place = ray.origin + t * ray.direction;
             for (std::size_t i = 0; i < mScene.volumes().size(); ++i) {
                 depth += length * mScene.volumes()[i]->extinctionAt(place, probes.volumes[i]);

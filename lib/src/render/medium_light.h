@@ -33,7 +33,7 @@ class MediumTransport {
     };
     std::vector<Interval> intervals(const Ray& ray, double end) const;
     template <typename Visitor>
-    void forEachStep(const Ray& ray, double end, const Visitor& visit) const;
+    void forEachStep(const Ray& ray, double end, double step, const Visitor& visit) const;
     MediumLight alongBySteps(const Ray& ray, double end, const InsideOf& inside,
                              SampleStream& numbers, SceneProbes& probes) const;
     MediumLight alongByTracking(const Ray& ray, double end, const InsideOf& inside,

@@ -192,6 +192,15 @@ std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid) {
     return points;
 }
 
+std::vector<openvdb::Vec3d> pointsToFrame(const Scene& scene) {
+    std::vector<openvdb::Vec3d> points;
+    for (const SceneObject& object : scene.objects) {
+        const std::vector<openvdb::Vec3d> active = activePoints(*object.grid);
+        points.insert(points.end(), active.begin(), active.end());
+    }
+    return points;
+}
+
 openvdb::BBoxd worldBox(const openvdb::FloatGrid& grid) {
     const openvdb::CoordBBox voxels = grid.evalActiveVoxelBoundingBox();
     const openvdb::BBoxd index(voxels.min().asVec3d() - openvdb::Vec3d(0.5),

@@ -33,6 +33,9 @@ bool needsFraming(const CameraOptions& camera);
 /// The corners of what is active, node by node, world units: points to frame in a picture.
 std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid);
 
+/// The same of all objects of a scene.
+std::vector<openvdb::Vec3d> pointsToFrame(const Scene& scene);
+
 /// Throws Error(ErrorKind::Result), for a grid whose values reach no more than `maximum`.
 [[noreturn]] void failEmpty(double maximum, double iso);
 

@@ -19,7 +19,7 @@ const double kFarthestNode = 0.5 * std::sqrt(3.0);
 // A root takes about three; more than this only if the density is no smooth function.
 constexpr int kMostRootSteps = 100;
 
-// Inside a solid steps have no bound that holds for all densities.
+// Where nothing is known of the densities.
 constexpr double kInnerStep = 0.5;
 
 // A place on the ray and how far the density there is above iso, or, on the way out, below.
@@ -39,7 +39,7 @@ double parabolaTop(const Sample& a, const Sample& b, const Sample& c) {
 struct Field {
     DensityProbe& density;
     double iso;
-    const ClearDistance& clear;
+    const ClearDistance* clear;  // of the side that is left; null if nothing is known
     const openvdb::FloatGrid* lattice;
 };
 
@@ -53,7 +53,7 @@ class March {
           mField(field),
           mSide(side),
           mVoxel(1 / ray.direction.length()) {
-        if (field.lattice && side > 0) mNodes.emplace(field.lattice->tree());
+        if (field.lattice && field.clear) mNodes.emplace(field.lattice->tree());
     }
 
     // Marches on through [t0, t1]. True once the surface is found.
@@ -68,7 +68,8 @@ class March {
                 mSamples = 0;
             } else {
                 if (arrive(at(t))) return true;
-                step = mSide > 0 ? std::max(kShortestStep, mField.clear(mLast.above)) : kInnerStep;
+                step = mField.clear ? std::max(kShortestStep, (*mField.clear)(mLast.above))
+                                    : kInnerStep;
             }
             const double next = t + step * mVoxel;
             if (!(next > t)) return false;
@@ -85,8 +86,9 @@ class March {
     double clearByNode(double t) {
         if (!mNodes) return 0;
         const openvdb::Vec3d place = mRay.origin + t * mRay.direction;
-        const double above = mNodes->getValue(openvdb::Coord::round(place)) - mField.iso;
-        return above < 0 ? mField.clear(above) - kFarthestNode : 0;
+        const double above =
+            mSide * (mNodes->getValue(openvdb::Coord::round(place)) - mField.iso);
+        return above < 0 ? (*mField.clear)(above)-kFarthestNode : 0;
     }
 
     Sample at(double t) const {
@@ -221,12 +223,12 @@ ClearDistance ClearDistance::ofGaussian(double iso, double cutoff, double densit
 }
 
 std::optional<RayHit> RayMarch::firstHit(const Ray& ray, DensityProbe& density, double end) const {
-    return marchAlong(ray, mBlocks, {density, mIso, mClear, mLattice}, 1, end);
+    return marchAlong(ray, mBlocks, {density, mIso, &mClear, mLattice}, 1, end);
 }
 
 std::optional<RayHit> RayMarch::firstExit(const Ray& ray, DensityProbe& density,
                                           double end) const {
-    return marchAlong(ray, mBlocks, {density, mIso, mClear, mLattice}, -1, end);
+    return marchAlong(ray, mBlocks, {density, mIso, mInside ? &*mInside : nullptr, mLattice}, -1, end);
 }
 
 }  // namespace bandvox

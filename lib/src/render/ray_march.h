@@ -38,7 +38,8 @@ class ClearDistance {
     /// dimensional diffusion generator" (1996).
     static ClearDistance ofGaussian(double iso, double cutoff, double densityError = kDensityError);
 
-    /// `above` is the density minus iso, not positive.
+    /// `above` is the density minus iso, not positive; inside the solid, where the other side is the
+    /// nearer the lower the density is, it is iso minus the density.
     double operator()(double above) const {
         const double place = std::clamp(-above * mScale, 0.0, double(kSteps));
         return mVoxels[static_cast<std::size_t>(place)];
@@ -58,10 +59,12 @@ class RayMarch {
   public:
     /// Steps are as long as `clear` allows, but never shorter than a quarter of a voxel. `lattice`,
     /// if given, holds the density at whole coordinates: then the density is asked for only where
-    /// the nearest node cannot tell that the surface is farther.
+    /// the nearest node cannot tell that the surface is farther. `inside`: what `clear` is, for
+    /// places of higher density; without it steps inside are half a voxel.
     RayMarch(const SurfaceBlocks& blocks, double iso, const ClearDistance& clear,
-             const openvdb::FloatGrid* lattice = nullptr)
-        : mBlocks(blocks), mIso(iso), mClear(clear), mLattice(lattice) {}
+             const openvdb::FloatGrid* lattice = nullptr,
+             const std::optional<ClearDistance>& inside = std::nullopt)
+        : mBlocks(blocks), mIso(iso), mClear(clear), mInside(inside), mLattice(lattice) {}
 
     /// The first place on a ray, 0 ≤ t ≤ `end`, where the density rises to iso: its origin if that
     /// is inside. Within 1e-5 voxels.
@@ -77,6 +80,7 @@ class RayMarch {
     const SurfaceBlocks& mBlocks;
     double mIso;
     ClearDistance mClear;
+    std::optional<ClearDistance> mInside;
     const openvdb::FloatGrid* mLattice;
 };
 

@@ -37,16 +37,6 @@ constexpr int kPreviewParts = 64;
 // Volumes that hide less than this of what is behind are not seen.
 constexpr double kLeastCoverage = 1e-3;
 
-// What is to be framed, world units.
-std::vector<Vec3d> pointsToFrame(const Scene& scene) {
-    std::vector<Vec3d> points;
-    for (const SceneObject& object : scene.objects) {
-        const std::vector<Vec3d> active = activePoints(*object.grid);
-        points.insert(points.end(), active.begin(), active.end());
-    }
-    return points;
-}
-
 Camera makeCamera(const Scene& scene, const PictureOptions& options) {
     return Camera(options.camera, options.width, options.height,
                   needsFraming(options.camera) ? pointsToFrame(scene)

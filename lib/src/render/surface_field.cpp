@@ -105,21 +105,25 @@ double densityError(const DensityMetadata& metadata) {
                     metadata.tolerance + ofSampling + metadata.storageError);
 }
 
-// How far lines of sight may step in a band-limited density. Solids under the default filter have a
-// sharp bound; others are taken to be about as steep as a flat face.
-ClearDistance clearDistance(const DrawableGrid& drawable, double maximum, double faceSlope) {
+// How far lines of sight may step in a band-limited density, outside and inside. Solids under the
+// default filter have a sharp bound; others are taken to be about as steep as a flat face.
+std::pair<ClearDistance, ClearDistance> clearDistances(const DrawableGrid& drawable,
+                                                       double maximum, double faceSlope) {
     constexpr double kRounding = 1e-2;
     const DensityMetadata& metadata = *drawable.metadata;
-    const double background = drawable.grid->background();
+    const double background = drawable.grid->background(), iso = drawable.iso;
     const double error = densityError(metadata);
     // Overlapping shells that were limited to 1 are no solid's density.
     if (metadata.order == 2 && !metadata.clamped && background == 0 && maximum < 1 + kRounding &&
-        drawable.iso < 1) {
-        return ClearDistance::ofGaussian(drawable.iso, metadata.cutoff, error);
+        iso < 1) {
+        // What is outside of a solid is a solid, too.
+        return {ClearDistance::ofGaussian(iso, metadata.cutoff, error),
+                ClearDistance::ofGaussian(1 - iso, metadata.cutoff, error + kRounding)};
     }
-    const double range = std::max(1.0, maximum - background);
-    return ClearDistance::ofSlope(drawable.iso, background, kSteepestMargin * faceSlope * range,
-                                  error);
+    const double steepest =
+        kSteepestMargin * faceSlope * std::max(1.0, maximum - background);
+    return {ClearDistance::ofSlope(iso, background, steepest, error),
+            ClearDistance::ofSlope(std::max(maximum, iso + error), iso, steepest, error)};
 }
 
 // Memory for the reconstruction's bricks: what most pictures need, if the machine has it.
@@ -176,14 +180,17 @@ std::unique_ptr<Reconstruction> readLattice(const openvdb::FloatGrid::ConstPtr& 
 SurfaceField readSurface(const DrawableGrid& drawable, double maximum,
                          const PictureOptions& options) {
     auto reconstruction = readLattice(drawable.grid, drawable.metadata, options);
+    const double iso = drawable.iso;
     if (drawable.metadata) {
         const double slope = faceGradient({drawable.metadata->order, drawable.metadata->cutoff});
-        return {std::move(reconstruction), slope, clearDistance(drawable, maximum, slope)};
+        const auto [outside, inside] = clearDistances(drawable, maximum, slope);
+        return {std::move(reconstruction), slope, outside, inside};
     }
     const double step = largestStep(*drawable.grid);
     const double steepest = (drawable.isLevelSet ? kSplineMargin : kSplineSteepest) * step;
     return {std::move(reconstruction), step,
-            ClearDistance::ofSlope(drawable.iso, drawable.grid->background(), steepest, 0)};
+            ClearDistance::ofSlope(iso, drawable.grid->background(), steepest, 0),
+            ClearDistance::ofSlope(std::max(maximum, iso + step), iso, steepest, 0)};
 }
 
 double surfaceThreshold(const DrawableGrid& drawable) {

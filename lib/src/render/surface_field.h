@@ -31,7 +31,8 @@ DrawableGrid makeDrawable(const openvdb::FloatGrid::ConstPtr& grid,
 struct SurfaceField {
     std::unique_ptr<Reconstruction> reconstruction;
     double slope;  ///< of a flat face, per voxel
-    ClearDistance clear;
+    ClearDistance clear;   ///< outside
+    ClearDistance inside;  ///< the same inside
 };
 
 /// What was band-limited by this library is read by the filter that it was made with, other grids

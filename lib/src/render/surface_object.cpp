@@ -28,7 +28,7 @@ SurfaceObject::SurfaceObject(const SceneObject& object, const PictureOptions& op
     if (object.colors) mColors.emplace(object.colors);
     if (empty()) return;
     mField = readSurface(mDrawable, mBlocks->maximum(), options);
-    mMarch.emplace(*mBlocks, mDrawable.iso, mField->clear, mDrawable.grid.get());
+    mMarch.emplace(*mBlocks, mDrawable.iso, mField->clear, mDrawable.grid.get(), mField->inside);
     mFlat = kFlatGradient * mField->slope;
 }
 

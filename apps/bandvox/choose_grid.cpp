@@ -1,0 +1,105 @@
+#include "choose_grid.h"
+
+#include "words.h"
+
+#include <bandvox/core/error.h>
+
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace bandvox::app {
+namespace {
+
+// The names that tell a file's grids from each other: of several of one name with their numbers.
+std::vector<std::string> uniqueNames(const openvdb::GridPtrVec& grids) {
+    std::map<std::string, int> counts, numbers;
+    for (const auto& grid : grids) ++counts[grid->getName()];
+    std::vector<std::string> names;
+    for (const auto& grid : grids) {
+        std::string name = grid->getName();
+        if (counts[name] > 1) name += "[" + std::to_string(numbers[name]++) + "]";
+        names.push_back(name);
+    }
+    return names;
+}
+
+std::string listed(const openvdb::GridPtrVec& grids) {
+    if (grids.empty()) return "no grids";
+    const std::vector<std::string> unique = uniqueNames(grids);
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+        names.push_back("'" + unique[i] + "' (" + grids[i]->valueType() + ")");
+    }
+    return "the grids " + joined(names, ", ");
+}
+
+[[noreturn]] void fail(const openvdb::GridPtrVec& grids, const std::string& file,
+                       const std::string& expected) {
+    throw Error(ErrorKind::Input, "'" + file + "' has " + listed(grids) + "; expected " + expected);
+}
+
+openvdb::FloatGrid::Ptr asFloats(const openvdb::GridBase::Ptr& grid) {
+    if (auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid)) return floats;
+    const auto doubles = openvdb::gridPtrCast<openvdb::DoubleGrid>(grid);
+    return doubles ? std::make_shared<openvdb::FloatGrid>(*doubles) : nullptr;
+}
+
+openvdb::Vec3SGrid::Ptr asColors(const openvdb::GridBase::Ptr& grid) {
+    return openvdb::gridPtrCast<openvdb::Vec3SGrid>(grid);
+}
+
+// The one grid that `convert` takes and that has a name; null if there is none.
+template <typename Convert>
+auto named(const openvdb::GridPtrVec& grids, const std::string& name, const std::string& file,
+           const Convert& convert) {
+    const std::vector<std::string> unique = uniqueNames(grids);
+    decltype(convert(openvdb::GridBase::Ptr())) found;
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+        if (unique[i] != name && grids[i]->getName() != name) continue;
+        const auto grid = convert(grids[i]);
+        if (!grid) continue;
+        if (found) fail(grids, file, "one of them by its number, as in '" + unique[i] + "'");
+        found = grid;
+    }
+    return found;
+}
+
+}  // namespace
+
+openvdb::FloatGrid::Ptr findFloatGrid(const openvdb::GridPtrVec& grids,
+                                      const std::optional<std::string>& name,
+                                      const std::string& standard, const std::string& file) {
+    auto found = named(grids, name.value_or(standard), file, asFloats);
+    if (!found && name) fail(grids, file, "a float grid '" + *name + "'");
+    return found;
+}
+
+openvdb::FloatGrid::Ptr chooseFloatGrid(const openvdb::GridPtrVec& grids,
+                                        const std::optional<std::string>& name,
+                                        const std::string& standard, const std::string& file) {
+    if (auto found = findFloatGrid(grids, name, standard, file)) return found;
+    openvdb::FloatGrid::Ptr only;
+    for (const auto& grid : grids) {
+        auto floats = asFloats(grid);
+        if (!floats) continue;
+        if (only) {
+            only = nullptr;
+            break;
+        }
+        only = floats;
+    }
+    if (only) return only;
+    fail(grids, file,
+         "a float grid '" + standard + "', or one float grid only (--grid names one)");
+}
+
+openvdb::Vec3SGrid::Ptr chooseColorGrid(const openvdb::GridPtrVec& grids,
+                                        const std::optional<std::string>& name,
+                                        const std::string& file) {
+    auto found = named(grids, name.value_or("Cd"), file, asColors);
+    if (!found && name) fail(grids, file, "a grid '" + *name + "' of vectors of floats");
+    return found;
+}
+
+}  // namespace bandvox::app

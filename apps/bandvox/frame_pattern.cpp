@@ -1,0 +1,85 @@
+#include "frame_pattern.h"
+
+#include <cctype>
+#include <charconv>
+#include <cstdio>
+
+namespace bandvox::app {
+namespace {
+
+// Where the number goes, and how many digits it has at least.
+struct Place {
+    std::size_t begin = 0, length = 0;
+    int digits = 0;
+};
+
+std::optional<Place> findPlace(const std::string& name) {
+    // In the last part of the path only.
+    const std::size_t slash = name.rfind('/');
+    const std::size_t start = slash == std::string::npos ? 0 : slash + 1;
+    const std::size_t hash = name.find('#', start);
+    if (hash != std::string::npos) {
+        const std::size_t end = std::min(name.find_first_not_of('#', hash), name.size());
+        return Place{hash, end - hash, static_cast<int>(end - hash)};
+    }
+    for (std::size_t percent = name.find('%', start); percent != std::string::npos;
+         percent = name.find('%', percent + 1)) {
+        std::size_t end = percent + 1;
+        while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end])) != 0) ++end;
+        if (end >= name.size() || name[end] != 'd' || end - percent > 4) continue;
+        int digits = 1;
+        std::from_chars(name.data() + percent + 1, name.data() + end, digits);
+        return Place{percent, end + 1 - percent, digits};
+    }
+    return std::nullopt;
+}
+
+bool readNumber(const char*& at, const char* end, int& number) {
+    const auto [next, error] = std::from_chars(at, end, number);
+    if (error != std::errc() || number < 0) return false;
+    at = next;
+    return true;
+}
+
+}  // namespace
+
+std::vector<int> FrameRange::numbers() const {
+    std::vector<int> all;
+    for (long long frame = first; frame <= last; frame += step) {
+        all.push_back(static_cast<int>(frame));
+    }
+    return all;
+}
+
+std::optional<FrameRange> parseFrames(const std::string& text) {
+    constexpr int kMostFrames = 1000000;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    FrameRange range{0, 0, 1};
+    if (!readNumber(at, end, range.first)) return std::nullopt;
+    range.last = range.first;
+    if (at != end && *at == '-') {
+        if (!readNumber(++at, end, range.last)) return std::nullopt;
+        if (at != end && *at == 'x' && !readNumber(++at, end, range.step)) return std::nullopt;
+    }
+    if (at != end || range.last < range.first || range.step < 1 || range.last > kMostFrames) {
+        return std::nullopt;
+    }
+    return range;
+}
+
+bool hasFrame(const std::string& name) {
+    return findPlace(name).has_value();
+}
+
+std::string withFrame(const std::string& name, int frame) {
+    const auto place = findPlace(name);
+    if (!place) return name;
+    std::string number = std::to_string(frame);
+    if (static_cast<int>(number.size()) < place->digits) {
+        number.insert(0, static_cast<std::size_t>(place->digits) - number.size(), '0');
+    }
+    return name.substr(0, place->begin) + number + name.substr(place->begin + place->length);
+}
+
+}  // namespace bandvox::app

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace bandvox::app {
+
+/// Numbers from `first` to `last`, both included, in steps.
+struct FrameRange {
+    int first, last, step;
+
+    std::vector<int> numbers() const;
+};
+
+/// Reads "7", "1-100" or "1-100x2"; nothing if it is none of these.
+std::optional<FrameRange> parseFrames(const std::string& text);
+
+/// True if a name has a place for the number of a frame: a run of '#', or "%d" or "%04d".
+bool hasFrame(const std::string& name);
+
+/// The name with a frame's number in that place, with zeros in front as the pattern has it. Names
+/// without such a place stay as they are.
+std::string withFrame(const std::string& name, int frame);
+
+}  // namespace bandvox::app

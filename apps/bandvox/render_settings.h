@@ -1,0 +1,19 @@
+#pragma once
+
+#include "option_table.h"
+#include "option_values.h"
+
+#include <bandvox/render/picture_options.h>
+
+#include <vector>
+
+namespace bandvox::app {
+
+/// The options of `render` that are about the picture and the camera, not about what is seen.
+std::vector<OptionEntry> pictureEntries();
+
+/// Reads them. Throws Error(ErrorKind::Usage), and Error(ErrorKind::Input) for a file with a camera
+/// that cannot be used.
+PictureOptions readPictureOptions(const OptionValues& values);
+
+}  // namespace bandvox::app

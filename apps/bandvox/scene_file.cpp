@@ -1,0 +1,107 @@
+#include "scene_file.h"
+
+#include "option_table.h"
+#include "words.h"
+
+#include <bandvox/core/error.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <optional>
+
+namespace bandvox::app {
+
+namespace {
+
+const std::vector<std::string> kGroups{"objects", "lights", "environment", "picture", "camera"};
+
+// A setting as an option would give it; nothing if it can be none.
+std::optional<std::string> textOf(const std::string& name, const nlohmann::json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number()) return value.dump();
+    if (!value.is_array() || value.empty()) return std::nullopt;
+    std::vector<std::string> parts;
+    for (const nlohmann::json& part : value) {
+        if (!part.is_number()) return std::nullopt;
+        parts.push_back(part.dump());
+    }
+    return joined(parts, name == "res" ? "x" : ",");
+}
+
+}  // namespace
+
+SceneFile::SceneFile(const std::string& path) : mPath(path), mJson(std::make_unique<nlohmann::json>()) {
+    std::ifstream stream(path);
+    if (!stream) fail("it cannot be opened for reading");
+    try {
+        *mJson = nlohmann::json::parse(stream);
+    } catch (const nlohmann::json::exception& error) {
+        fail(std::string("it is no JSON (") + error.what() + ")");
+    }
+    if (!mJson->is_object()) fail("it holds no scene; expected { \"objects\": [ ... ] }");
+    for (const auto& [name, value] : mJson->items()) {
+        if (std::find(kGroups.begin(), kGroups.end(), name) == kGroups.end()) {
+            fail("there is '" + name + "'; expected " + joined(kGroups, ", "));
+        }
+    }
+}
+
+SceneFile::~SceneFile() = default;
+
+bool SceneFile::has(const std::string& group) const {
+    return mJson->contains(group);
+}
+
+OptionValues SceneFile::group(const std::string& group,
+                              const std::vector<std::string>& names) const {
+    return read(mJson->at(group), group, names);
+}
+
+std::vector<OptionValues> SceneFile::list(const std::string& list,
+                                          const std::vector<std::string>& names) const {
+    std::vector<OptionValues> all;
+    if (!has(list)) return all;
+    const nlohmann::json& groups = mJson->at(list);
+    if (!groups.is_array()) fail(list + " is no list; expected [ { ... }, ... ]");
+    for (const nlohmann::json& settings : groups) {
+        all.push_back(read(settings, list + "[" + std::to_string(all.size()) + "]", names));
+    }
+    return all;
+}
+
+OptionValues SceneFile::read(const nlohmann::json& settings, const std::string& where,
+                             const std::vector<std::string>& names) const {
+    if (!settings.is_object()) fail(where + " holds no settings; expected { ... }");
+    OptionValues values("'" + mPath.string() + "': " + where + ".", ErrorKind::Input);
+    for (const auto& [name, value] : settings.items()) {
+        if (std::find(names.begin(), names.end(), name) == names.end()) {
+            const std::string nearest = nearestName(name, names);
+            fail(where + " has '" + name + "'; " +
+                 (nearest.empty() ? "expected " + joined(names, ", ")
+                                  : "did you mean '" + nearest + "'?"));
+        }
+        if (value.is_boolean()) {
+            if (value.get<bool>()) values.set(name, "");
+            continue;
+        }
+        const auto text = textOf(name, value);
+        if (!text) {
+            fail(where + "." + name +
+                 " is neither text, a number, a list of numbers, true nor false");
+        }
+        values.set(name, *text);
+    }
+    return values;
+}
+
+std::string SceneFile::beside(const std::string& file) const {
+    return (mPath.parent_path() / file).string();
+}
+
+void SceneFile::fail(const std::string& why) const {
+    throw Error(ErrorKind::Input, "'" + mPath.string() + "': " + why);
+}
+
+}  // namespace bandvox::app
