@@ -90,8 +90,7 @@ openvdb::FloatGrid::Ptr chooseFloatGrid(const openvdb::GridPtrVec& grids,
         only = floats;
     }
     if (only) return only;
-    fail(grids, file,
-         "a float grid '" + standard + "', or one float grid only (--grid names one)");
+    fail(grids, file, "a float grid '" + standard + "', or one float grid only (--grid names one)");
 }
 
 openvdb::Vec3SGrid::Ptr chooseColorGrid(const openvdb::GridPtrVec& grids,

@@ -83,7 +83,8 @@ struct PlacedCamera {
 
 class CameraSearch {
   public:
-    CameraSearch(const nlohmann::json& scene, std::string name) : mScene(scene), mName(std::move(name)) {}
+    CameraSearch(const nlohmann::json& scene, std::string name)
+        : mScene(scene), mName(std::move(name)) {}
 
     std::optional<PlacedCamera> find() const {
         // Nodes that no other has are where trees begin.
@@ -107,7 +108,8 @@ class CameraSearch {
         const nlohmann::json& node = mScene.at("nodes").at(index);
         const Mat4d transform = above * transformOf(node);
         if (node.contains("camera")) {
-            const nlohmann::json& camera = mScene.at("cameras").at(node.at("camera").get<std::size_t>());
+            const nlohmann::json& camera =
+                mScene.at("cameras").at(node.at("camera").get<std::size_t>());
             if (mName.empty() || node.value("name", "") == mName ||
                 camera.value("name", "") == mName) {
                 return PlacedCamera{camera, transform};

@@ -56,9 +56,8 @@ std::string Range::text() const {
 
 void OptionValues::fail(const std::string& name, const std::string& expected) const {
     const auto found = mValues.find(name);
-    throw Error(mKind, mTitle + name + " is '" +
-                                      (found == mValues.end() ? "" : found->second) +
-                                      "'; expected " + expected);
+    throw Error(mKind, mTitle + name + " is '" + (found == mValues.end() ? "" : found->second) +
+                           "'; expected " + expected);
 }
 
 std::optional<std::string> OptionValues::text(const std::string& name) const {
@@ -81,8 +80,7 @@ int OptionValues::wholeNumber(const std::string& name, int low, int high, int fa
     if (!given) return fallback;
     const auto value = parseWhole(*given);
     if (!value || *value < low || *value > high) {
-        fail(name,
-             "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+        fail(name, "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
     }
     return *value;
 }
@@ -121,8 +119,7 @@ std::optional<std::vector<int>> OptionValues::wholeNumbers(const std::string& na
     return numbers;
 }
 
-std::optional<openvdb::Vec2i> OptionValues::size(const std::string& name, int low,
-                                                 int high) const {
+std::optional<openvdb::Vec2i> OptionValues::size(const std::string& name, int low, int high) const {
     const auto given = text(name);
     if (!given) return std::nullopt;
     const std::vector<std::string_view> parts = split(*given, 'x');

@@ -30,8 +30,9 @@ struct Range {
 inline constexpr Range kAnyColor{.low = 0, .high = 1e6};
 inline constexpr Range kAnyPlace{.low = -1e30, .high = 1e30};
 
-/// Settings as text, by name, and strict readings of them. A reading throws Error(ErrorKind::Usage),
-/// or another kind that is asked for, that names the setting, what was found and what was expected.
+/// Settings as text, by name, and strict readings of them. A reading throws
+/// Error(ErrorKind::Usage), or another kind that is asked for, that names the setting, what was
+/// found and what was expected.
 class OptionValues {
   public:
     /// `title`: what errors put before a name.

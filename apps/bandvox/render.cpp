@@ -57,8 +57,9 @@ void readFrames(const CommandLine& line, RenderRequest& request) {
         request.frames = FrameRange{1, request.turns, 1}.numbers();
     }
     if (hasInputFrames && request.frames.empty()) {
-        throw Error(ErrorKind::Usage, "an input has a place for the number of a frame; expected "
-                                      "--frames to say which");
+        throw Error(ErrorKind::Usage,
+                    "an input has a place for the number of a frame; expected "
+                    "--frames to say which");
     }
     const bool isSequence = request.frames.size() > 1 || request.turns > 0;
     if (isSequence && !hasFrame(request.output)) {
@@ -84,6 +85,7 @@ RenderRequest parseRender(const CommandLine& line) {
     request.shading = static_cast<Shading>(line.choice("shading", shadingNames(), 0));
     if (request.shading != Shading::Spectral) requirePlain(line, request);
     requireValid(request.picture);
+    for (const Light& light : request.scene.lights) requireValid(light);
     readFrames(line, request);
     return request;
 }
@@ -187,8 +189,9 @@ const CommandTable& renderTable() {
             "depth (Z), normals (N) and positions (P). A scene file is JSON: lists of objects and "
             "lights, and groups environment, camera and picture, whose settings have the names of "
             "the options below.",
-            {{"INPUT", "A .vdb file, as often as there are objects, or one .json file with a scene; "
-                       "stdin.vdb is the standard input.",
+            {{"INPUT",
+              "A .vdb file, as often as there are objects, or one .json file with a scene; "
+              "stdin.vdb is the standard input.",
               true}},
             options,
             {
@@ -198,13 +201,11 @@ const CommandTable& renderTable() {
                  "With depth, normals and positions, four lines of sight per pixel."},
                 {"bandvox render bunny.vdb -o front.png --camera orthographic --from 0,0,1",
                  "A parallel view along -z."},
-                {"bandvox render bunny.vdb ball.vdb -o two.png --color 0.8,0.7,0.6/1,1,1 "
-                 "--transparency 0/1 --shadows --gather 4 --samples 16",
+                {"bandvox render bunny.vdb ball.vdb -o two.png --transparency 0/1 --shadows",
                  "Two objects, the second of glass, with shadows."},
                 {"bandvox render cloud.vdb -o cloud.png --mode volume --anisotropy 0.6",
                  "A density as a cloud."},
-                {"bandvox render bunny.vdb -o bunny.####.png --turntable 36",
-                 "Once around it."},
+                {"bandvox render bunny.vdb -o bunny.####.png --turntable 36", "Once around it."},
             }};
     }();
     return table;

@@ -23,9 +23,9 @@ const Range kLength{.low = 0, .high = 1e30};
 
 // Settings of an object, on the command line for each of several between slashes.
 const std::vector<std::string> kObjectNames{
-    "grid",       "mode",       "iso",         "color",    "roughness", "reflectance",
-    "transparency", "refraction", "tint-length", "colors",   "extinction", "anisotropy",
-    "emission",   "temperature", "glow"};
+    "grid",        "mode",         "iso",        "color",       "roughness",
+    "reflectance", "transparency", "refraction", "tint-length", "colors",
+    "extinction",  "anisotropy",   "emission",   "temperature", "glow"};
 
 ObjectRequest readObject(const OptionValues& values, const std::string& file) {
     ObjectRequest request;
@@ -34,8 +34,7 @@ ObjectRequest readObject(const OptionValues& values, const std::string& file) {
     request.colors = values.text("colors");
     request.temperatures = values.text("temperature");
     SceneObject& object = request.object;
-    object.kind =
-        static_cast<SceneObject::Kind>(values.choice("mode", {"surface", "volume"}, 0));
+    object.kind = static_cast<SceneObject::Kind>(values.choice("mode", {"surface", "volume"}, 0));
     if (values.has("iso")) object.iso = values.number("iso", {}, 0);
     const bool isVolume = object.kind == SceneObject::Kind::Volume;
     Material& material = object.material;
@@ -89,8 +88,7 @@ void readLights(const CommandLine& line, SceneRequest& request) {
     Environment& environment = request.environment;
     environment.map = readMap(line, "environment", "environment-turn");
     environment.visible = line.has("environment-visible");
-    const double ambient =
-        line.number("ambient", kPart, environment.map ? 1.0 : standard.ambient);
+    const double ambient = line.number("ambient", kPart, environment.map ? 1.0 : standard.ambient);
     environment.color = openvdb::Vec3d(ambient);
 
     // An environment has lamps of its own.
@@ -151,14 +149,13 @@ void readSceneFile(const CommandLine& line, const std::string& path,
         }
     }
     if (file.has("environment")) {
-        OptionValues values =
-            file.group("environment", {"color", "file", "turn", "visible"});
+        OptionValues values = file.group("environment", {"color", "file", "turn", "visible"});
         if (const auto map = values.text("file")) values.set("file", file.beside(*map));
         Environment& environment = request.environment;
         environment.map = readMap(values, "file", "turn");
         environment.visible = values.has("visible");
-        environment.color = values.vector("color", kAnyColor)
-                                .value_or(openvdb::Vec3d(environment.map ? 1.0 : 0.1));
+        environment.color =
+            values.vector("color", kAnyColor).value_or(openvdb::Vec3d(environment.map ? 1.0 : 0.1));
     }
     // What the command line says comes after what the file says.
     for (const char* group : {"picture", "camera"}) {
@@ -241,7 +238,8 @@ std::vector<OptionEntry> sceneEntries() {
     const auto vector = [](const openvdb::Vec3d& v) {
         return formatNumber(v.x()) + "," + formatNumber(v.y()) + "," + formatNumber(v.z());
     };
-    const std::string object = "Objects (of several inputs: one value, or one for each, as in a/b/c)";
+    const std::string object =
+        "Objects (of several inputs: one value, or one for each, as in a/b/c)";
     const std::string light = "Light";
     return {
         {"grid", 0, "NAME", "density, or the only one of floats",

@@ -89,7 +89,8 @@ std::vector<OptionEntry> pictureEntries() {
         {"cache-size", 0, "MB", "a quarter of the free memory, at most 2147",
          "Memory for what is read between the nodes of a grid.", picture},
         {"read-error", 0, "E", formatNumber(options.tolerance),
-         "Error of what is read between the nodes, 1e-6 to 0.1: of the density, and of its gradient "
+         "Error of what is read between the nodes, 1e-6 to 0.1: of the density, and of its "
+         "gradient "
          "relative to a flat face's.",
          picture},
         {"camera", 0, "KIND", "perspective", "perspective or orthographic.", view},
@@ -103,9 +104,10 @@ std::vector<OptionEntry> pictureEntries() {
         {"from", 0, "X,Y,Z", inWords(camera.from),
          "Direction from the object to the camera, if --eye is not given.", view},
         {"focal", 0, "MM", formatNumber(camera.focal), "Focal length in mm (perspective).", view},
-        {"aperture", 0, "MM", formatNumber(camera.aperture), "Width of the film in mm (perspective).",
-         view},
-        {"fov", 0, "DEG", "as focal and aperture", "Angle of view from left to right, instead of "
+        {"aperture", 0, "MM", formatNumber(camera.aperture),
+         "Width of the film in mm (perspective).", view},
+        {"fov", 0, "DEG", "as focal and aperture",
+         "Angle of view from left to right, instead of "
          "--focal.",
          view},
         {"frame", 0, "W", "fits",
@@ -144,8 +146,8 @@ PictureOptions readPictureOptions(const OptionValues& values) {
     options.seed = static_cast<std::uint32_t>(
         values.wholeNumber("seed", 0, std::numeric_limits<int>::max(), 0));
     options.allowEmpty = values.has("allow-empty");
-    options.previewSeconds = values.number("preview", {.low = 0, .high = 1e6},
-                                           options.previewSeconds);
+    options.previewSeconds =
+        values.number("preview", {.low = 0, .high = 1e6}, options.previewSeconds);
     options.cacheBytes =
         static_cast<std::size_t>(values.wholeNumber("cache-size", 1, kMostMegabytes, 0)) * 1000000;
     options.tolerance = values.number("read-error", {.low = 1e-6, .high = 0.1}, options.tolerance);

@@ -32,7 +32,8 @@ std::optional<std::string> textOf(const std::string& name, const nlohmann::json&
 
 }  // namespace
 
-SceneFile::SceneFile(const std::string& path) : mPath(path), mJson(std::make_unique<nlohmann::json>()) {
+SceneFile::SceneFile(const std::string& path)
+    : mPath(path), mJson(std::make_unique<nlohmann::json>()) {
     std::ifstream stream(path);
     if (!stream) fail("it cannot be opened for reading");
     try {

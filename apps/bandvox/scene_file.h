@@ -11,8 +11,8 @@
 
 namespace bandvox::app {
 
-/// A description of a scene in JSON: groups of settings, and lists of such groups. Settings have the
-/// names and the meaning of the command's options: "color": [1, 0.5, 0] is --color 1,0.5,0, and
+/// A description of a scene in JSON: groups of settings, and lists of such groups. Settings have
+/// the names and the meaning of the command's options: "color": [1, 0.5, 0] is --color 1,0.5,0, and
 /// "shadows": true is --shadows.
 class SceneFile {
   public:

@@ -16,7 +16,7 @@ struct PathLight {
     openvdb::Vec3d light{0, 0, 0};  ///< without the background
     double coverage = 0;            ///< the part of the background that is hidden
     std::optional<SurfaceHit> hit;  ///< the first surface
-    double depth = -1;              ///< along the ray, of volumes if no surface is hit; < 0: nothing
+    double depth = -1;  ///< along the ray, of volumes if no surface is hit; < 0: nothing
 };
 
 /// Follows lines of sight to where light comes from, as TransportOptions has it.
@@ -33,11 +33,11 @@ class LightPaths {
     struct Path {
         Ray ray;
         InsideOf inside;
-        int depth = 0;       // how often it has been mirrored or refracted
-        int bounces = 0;     // and sent on by matt surfaces
-        double weight = 1;   // the largest part of its light that arrives
-        bool isSharp = true;      // mirrored and refracted by even facets only
-        bool isStraight = true;   // not mirrored: what it sees lies behind
+        int depth = 0;           // how often it has been mirrored or refracted
+        int bounces = 0;         // and sent on by matt surfaces
+        double weight = 1;       // the largest part of its light that arrives
+        bool isSharp = true;     // mirrored and refracted by even facets only
+        bool isStraight = true;  // not mirrored: what it sees lies behind
     };
     // A place where a path meets a surface.
     struct Meeting {
@@ -46,7 +46,7 @@ class LightPaths {
         openvdb::Vec3d place;
         openvdb::Vec3d normal;  // towards the path's ray
         LocalFrame frame;
-        openvdb::Vec3d out;    // local, against the ray
+        openvdb::Vec3d out;  // local, against the ray
         openvdb::Vec3d color;
     };
     struct Thread {

@@ -87,6 +87,20 @@ void requireValid(const RenderOptions& options) {
     }
 }
 
+void requireValid(const Light& light) {
+    requireColor("color of a light", light.color);
+    const bool isPoint = light.kind == Light::Kind::Point;
+    requireInRange(isPoint ? "radius of a light, world units," : "size of a light, degrees,",
+                   light.size, 0.0, isPoint ? 1e30 : 180.0);
+    const double length = light.place.length();
+    if (!std::isfinite(length) || (!isPoint && !(length > 0))) {
+        std::ostringstream message;
+        message << "a light comes from " << light.place << "; it must be a "
+                << (isPoint ? "place" : "direction");
+        throw Error(ErrorKind::Usage, message.str());
+    }
+}
+
 void requireValid(const Scene& scene) {
     const auto objects = static_cast<int>(scene.objects.size());
     if (objects < 1 || objects > kMostObjects) {
@@ -114,19 +128,7 @@ void requireValid(const Scene& scene) {
         requireInRange("anisotropy of a volume", medium.anisotropy, -0.999, 0.999);
         requireInRange("glow of a volume", medium.glow, 0.0, 1e30);
     }
-    for (const Light& light : scene.lights) {
-        requireColor("color of a light", light.color);
-        const bool isPoint = light.kind == Light::Kind::Point;
-        requireInRange(isPoint ? "radius of a light, world units," : "size of a light, degrees,",
-                       light.size, 0.0, isPoint ? 1e30 : 180.0);
-        const double length = light.place.length();
-        if (!std::isfinite(length) || (!isPoint && !(length > 0))) {
-            std::ostringstream message;
-            message << "a light comes from " << light.place << "; it must be a "
-                    << (isPoint ? "place" : "direction");
-            throw Error(ErrorKind::Usage, message.str());
-        }
-    }
+    for (const Light& light : scene.lights) requireValid(light);
     requireColor("color of the environment", scene.environment.color);
 }
 

@@ -86,8 +86,7 @@ class March {
     double clearByNode(double t) {
         if (!mNodes) return 0;
         const openvdb::Vec3d place = mRay.origin + t * mRay.direction;
-        const double above =
-            mSide * (mNodes->getValue(openvdb::Coord::round(place)) - mField.iso);
+        const double above = mSide * (mNodes->getValue(openvdb::Coord::round(place)) - mField.iso);
         return above < 0 ? (*mField.clear)(above)-kFarthestNode : 0;
     }
 
@@ -226,9 +225,9 @@ std::optional<RayHit> RayMarch::firstHit(const Ray& ray, DensityProbe& density, 
     return marchAlong(ray, mBlocks, {density, mIso, &mClear, mLattice}, 1, end);
 }
 
-std::optional<RayHit> RayMarch::firstExit(const Ray& ray, DensityProbe& density,
-                                          double end) const {
-    return marchAlong(ray, mBlocks, {density, mIso, mInside ? &*mInside : nullptr, mLattice}, -1, end);
+std::optional<RayHit> RayMarch::firstExit(const Ray& ray, DensityProbe& density, double end) const {
+    return marchAlong(ray, mBlocks, {density, mIso, mInside ? &*mInside : nullptr, mLattice}, -1,
+                      end);
 }
 
 }  // namespace bandvox

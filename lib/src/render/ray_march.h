@@ -38,8 +38,8 @@ class ClearDistance {
     /// dimensional diffusion generator" (1996).
     static ClearDistance ofGaussian(double iso, double cutoff, double densityError = kDensityError);
 
-    /// `above` is the density minus iso, not positive; inside the solid, where the other side is the
-    /// nearer the lower the density is, it is iso minus the density.
+    /// `above` is the density minus iso, not positive; inside the solid, where the other side is
+    /// the nearer the lower the density is, it is iso minus the density.
     double operator()(double above) const {
         const double place = std::clamp(-above * mScale, 0.0, double(kSteps));
         return mVoxels[static_cast<std::size_t>(place)];

@@ -102,8 +102,7 @@ class Painter {
         std::optional<Sight> nearest;
         double mediumDepth = 0, mediumWeight = 0;
         for (std::size_t s = 0; s < mPlaces.size(); ++s) {
-            const Ray ray =
-                mCamera.ray(pictureColumn + mPlaces[s][0], pictureRow + mPlaces[s][1]);
+            const Ray ray = mCamera.ray(pictureColumn + mPlaces[s][0], pictureRow + mPlaces[s][1]);
             SampleStream numbers(mOptions.seed, static_cast<std::uint32_t>(pictureColumn),
                                  static_cast<std::uint32_t>(pictureRow),
                                  static_cast<std::uint32_t>(s));
@@ -128,8 +127,8 @@ class Painter {
             nearest = Sight{mCamera.depth(position), position, Vec3d(0.0)};
         }
         setSight(mImage, pixel,
-                 nearest.value_or(Sight{std::numeric_limits<double>::infinity(), Vec3d(0.0),
-                                        Vec3d(0.0)}));
+                 nearest.value_or(
+                     Sight{std::numeric_limits<double>::infinity(), Vec3d(0.0), Vec3d(0.0)}));
         return hits;
     }
 
@@ -196,8 +195,8 @@ void drawWithPreview(Painter& painter, Image& image, const PictureOptions& optio
     if (scene.surfaces().size() == 1 && scene.volumes().empty()) {
         const SurfaceObject& surface = *scene.surfaces().front();
         if (surface.maximum() < surface.threshold()) {
-            message << "the density reaches " << surface.maximum()
-                    << " only, below the iso-value " << surface.threshold();
+            message << "the density reaches " << surface.maximum() << " only, below the iso-value "
+                    << surface.threshold();
             throw Error(ErrorKind::Result, message.str());
         }
     }

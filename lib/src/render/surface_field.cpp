@@ -107,8 +107,8 @@ double densityError(const DensityMetadata& metadata) {
 
 // How far lines of sight may step in a band-limited density, outside and inside. Solids under the
 // default filter have a sharp bound; others are taken to be about as steep as a flat face.
-std::pair<ClearDistance, ClearDistance> clearDistances(const DrawableGrid& drawable,
-                                                       double maximum, double faceSlope) {
+std::pair<ClearDistance, ClearDistance> clearDistances(const DrawableGrid& drawable, double maximum,
+                                                       double faceSlope) {
     constexpr double kRounding = 1e-2;
     const DensityMetadata& metadata = *drawable.metadata;
     const double background = drawable.grid->background(), iso = drawable.iso;
@@ -120,8 +120,7 @@ std::pair<ClearDistance, ClearDistance> clearDistances(const DrawableGrid& drawa
         return {ClearDistance::ofGaussian(iso, metadata.cutoff, error),
                 ClearDistance::ofGaussian(1 - iso, metadata.cutoff, error + kRounding)};
     }
-    const double steepest =
-        kSteepestMargin * faceSlope * std::max(1.0, maximum - background);
+    const double steepest = kSteepestMargin * faceSlope * std::max(1.0, maximum - background);
     return {ClearDistance::ofSlope(iso, background, steepest, error),
             ClearDistance::ofSlope(std::max(maximum, iso + error), iso, steepest, error)};
 }

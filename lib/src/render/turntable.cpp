@@ -34,8 +34,8 @@ std::vector<CameraOptions> turntable(const Scene& scene, const PictureOptions& o
     std::vector<CameraOptions> cameras;
     double farthest = 0, widest = 0;
     for (int i = 0; i < pictures; ++i) {
-        const auto turn =
-            openvdb::math::rotation<openvdb::math::Mat3d>(axis, 2 * std::numbers::pi * i / pictures);
+        const auto turn = openvdb::math::rotation<openvdb::math::Mat3d>(
+            axis, 2 * std::numbers::pi * i / pictures);
         CameraOptions camera = first;
         camera.from = turn * back;
         if (first.eye) camera.eye = *first.lookat + camera.from;

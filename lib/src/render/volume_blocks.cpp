@@ -102,7 +102,8 @@ VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid, bool isBandLimited) :
         mFinite = mFinite && found[i].finite;
         const openvdb::Coord block = leaves[i]->origin() >> kBlockLog2;
         for (int n = 0; n < 27; ++n) {
-            if (found[i].most[n] > kNoDensity) raise(neighbourOf(block, n), rise * found[i].most[n]);
+            if (found[i].most[n] > kNoDensity)
+                raise(neighbourOf(block, n), rise * found[i].most[n]);
         }
     }
     mBox = boxOfBlocks(mBlocks);
