@@ -352,7 +352,7 @@ TEST_F(RenderScene, SaysOfAPictureHowItWasTaken) {
     EXPECT_EQ(spec.get_int_attribute("bandvox_samples"), 2);
     EXPECT_GT(spec.get_float_attribute("bandvox_seconds"), 0);
     EXPECT_NE(spec.find_attribute("worldtocamera"), nullptr);
-    EXPECT_NE(spec.find_attribute("worldtoscreen"), nullptr);
+    EXPECT_NE(spec.find_attribute("worldToNDC"), nullptr);
 }
 
 TEST_F(RenderScene, FewMegabytesOfCacheChangeNothing) {
