@@ -32,13 +32,13 @@ template <int kLanes>
     return first;
 }
 
-template <int kLanes>
-[[gnu::always_inline]] inline void spread(std::span<const SurfaceSample> samples, float offset,
+template <int kLanes, typename Sample>
+[[gnu::always_inline]] inline void spread(std::span<const Sample> samples, float offset,
                                           const KernelPolynomials& kernel,
                                           const SpreadLattice& lattice) {
     alignas(64) float wx[kLanes], wy[kLanes], wz[kLanes];
-    for (const SurfaceSample& sample : samples) {
-        const float weight = -sample.areaVector.x();
+    for (const Sample& sample : samples) {
+        const float weight = weightOf(sample);
         if (weight == 0) continue;
         const int x = axisWeights<kLanes>(kernel, sample.position.x() + offset, wx);
         const int y = axisWeights<kLanes>(kernel, sample.position.y() + offset, wy);
@@ -56,6 +56,7 @@ template <int kLanes>
     }
 }
 
+// The functions that are compiled for several instruction sets cannot be templates.
 BANDVOX_FOR_EACH_INSTRUCTION_SET
 void spreadNarrow(std::span<const SurfaceSample> samples, float offset,
                   const KernelPolynomials& kernel, const SpreadLattice& lattice) {
@@ -68,17 +69,34 @@ void spreadWide(std::span<const SurfaceSample> samples, float offset,
     spread<16>(samples, offset, kernel, lattice);
 }
 
+BANDVOX_FOR_EACH_INSTRUCTION_SET
+void spreadNarrowWeights(std::span<const WeightedSample> samples, float offset,
+                         const KernelPolynomials& kernel, const SpreadLattice& lattice) {
+    spread<8>(samples, offset, kernel, lattice);
+}
+
+BANDVOX_FOR_EACH_INSTRUCTION_SET
+void spreadWideWeights(std::span<const WeightedSample> samples, float offset,
+                       const KernelPolynomials& kernel, const SpreadLattice& lattice) {
+    spread<16>(samples, offset, kernel, lattice);
+}
+
+KernelPolynomials polynomialsOf(const SpreadingKernel& kernel) {
+    return {kernel.polynomials().data(), kernel.polynomialDegree(), kernel.width()};
+}
+
 }  // namespace
 
 void spreadSamples(std::span<const SurfaceSample> samples, float offset,
                    const SpreadingKernel& kernel, const SpreadLattice& lattice) {
-    const KernelPolynomials polynomials{kernel.polynomials().data(), kernel.polynomialDegree(),
-                                        kernel.width()};
-    if (kernel.paddedWidth() == 8) {
-        spreadNarrow(samples, offset, polynomials, lattice);
-    } else {
-        spreadWide(samples, offset, polynomials, lattice);
-    }
+    const auto spreadAll = kernel.paddedWidth() == 8 ? spreadNarrow : spreadWide;
+    spreadAll(samples, offset, polynomialsOf(kernel), lattice);
+}
+
+void spreadSamples(std::span<const WeightedSample> samples, float offset,
+                   const SpreadingKernel& kernel, const SpreadLattice& lattice) {
+    const auto spreadAll = kernel.paddedWidth() == 8 ? spreadNarrowWeights : spreadWideWeights;
+    spreadAll(samples, offset, polynomialsOf(kernel), lattice);
 }
 
 }  // namespace bandvox

@@ -1,7 +1,5 @@
 #include "bandlimit/tile_filter.h"
 
-#include "bandlimit/spread_samples.h"
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -17,7 +15,7 @@ constexpr std::size_t kSamplesTogether = 2048;
 
 }  // namespace
 
-TileFilter::TileFilter(const TilePlan& plan)
+TileFilter::TileFilter(const TilePlan& plan, Output output)
     : mPlan(plan),
       mShift((plan.kernel.width() + 1) / 2),
       mMargin(mShift + (plan.kernel.width() + 1) / 2 + 1),
@@ -32,7 +30,8 @@ TileFilter::TileFilter(const TilePlan& plan)
     for (int i = 0; i < side; ++i) {
         const double k = static_cast<double>(i <= half ? i : i - side) / side;
         const std::complex<double> turn(0, 2 * std::numbers::pi * k);
-        const std::complex<double> d = i == 0 ? 1.0 : (1.0 - std::exp(-turn)) / turn;
+        const bool isOne = i == 0 || output == Output::Values;
+        const std::complex<double> d = isOne ? 1.0 : (1.0 - std::exp(-turn)) / turn;
         mDifference[2 * i] = static_cast<float>(d.real());
         mDifference[2 * i + 1] = static_cast<float>(d.imag());
     }
@@ -62,7 +61,8 @@ openvdb::Vec3d TileFilter::regionOffset() const {
     return openvdb::Vec3d(-mPlan.halo - 1, -mPlan.halo, -mPlan.halo);
 }
 
-void TileFilter::spread(std::span<const SurfaceSample> samples, float* buffer) const {
+template <typename Sample>
+void TileFilter::spreadInParts(std::span<const Sample> samples, float* buffer) const {
     const auto offset = static_cast<float>(mShift);
     const SpreadLattice lattice{buffer, mFft.yCount(), mFft.zStride()};
     if (samples.size() <= kFewSamples) {
@@ -80,10 +80,14 @@ void TileFilter::spread(std::span<const SurfaceSample> samples, float* buffer) c
     }
 }
 
+template void TileFilter::spreadInParts(std::span<const SurfaceSample>, float*) const;
+template void TileFilter::spreadInParts(std::span<const WeightedSample>, float*) const;
+
 // The nodes that samples may have been spread to.
-openvdb::CoordBBox TileFilter::nodesUnder(std::span<const SurfaceSample> samples) const {
+template <typename Sample>
+openvdb::CoordBBox TileFilter::nodesUnder(std::span<const Sample> samples) const {
     openvdb::math::BBox<openvdb::Vec3f> box;
-    for (const SurfaceSample& sample : samples) box.expand(sample.position);
+    for (const Sample& sample : samples) box.expand(sample.position);
     const int reach = mPlan.kernel.paddedWidth() + 1;
     const openvdb::Coord count(mFft.xCount(), mFft.yCount(), mFft.zStride());
     openvdb::CoordBBox nodes;
