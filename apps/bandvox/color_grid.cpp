@@ -2,8 +2,6 @@
 
 #include "words.h"
 
-#include <bandvox/bandlimit/surface_to_color.h>
-
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
@@ -28,17 +26,22 @@ ColoredMesh loadColors(CommandRun& run, const std::string& input, MeshFile& plai
     return std::move(file.colored);
 }
 
-openvdb::Vec3SGrid::Ptr makeColorGrid(CommandRun& run, const ColoredMesh& mesh,
-                                      const DensityResult& density, const DensityOptions& options) {
-    const ColorResult result = surfaceToColor(
-        mesh, {density.grid->voxelSize().x(), options.filter, options.tile}, run.progress());
+ColorResult makeColors(CommandRun& run, const ColoredMesh& mesh, const DensityResult& density,
+                       const DensityOptions& options) {
+    ColorOptions colors;
+    colors.voxelSize = density.grid->voxelSize().x();
+    colors.filter = options.filter;
+    colors.tile = options.tile;
+    return surfaceToColor(mesh, colors, run.progress());
+}
+
+void sayColors(CommandRun& run, const ColorResult& result) {
     const auto voxels = static_cast<std::int64_t>(result.grid->activeVoxelCount());
     run.say("color    " + formatCount(voxels, "active voxel", "active voxels") + " of Cd, from " +
             formatCount(result.surfaceSamples, "surface sample", "surface samples"));
     run.count("color_voxels", voxels);
     run.count("color_samples", result.surfaceSamples);
     run.count("color_tiles", result.tiles);
-    return result.grid;
 }
 
 }  // namespace bandvox::app

@@ -3,6 +3,7 @@
 #include "command_run.h"
 
 #include <bandvox/bandlimit/density.h>
+#include <bandvox/bandlimit/surface_to_color.h>
 #include <bandvox/source/colored_mesh.h>
 #include <bandvox/source/read_mesh.h>
 
@@ -14,8 +15,11 @@ namespace bandvox::app {
 /// also if there are none.
 ColoredMesh loadColors(CommandRun& run, const std::string& input, MeshFile& plain);
 
-/// The grid of a mesh's colours on the lattice of its density; says and counts what came of it.
-openvdb::Vec3SGrid::Ptr makeColorGrid(CommandRun& run, const ColoredMesh& mesh,
-                                      const DensityResult& density, const DensityOptions& options);
+/// The colours of a mesh on the lattice of its density.
+ColorResult makeColors(CommandRun& run, const ColoredMesh& mesh, const DensityResult& density,
+                       const DensityOptions& options);
+
+/// Says and counts what came of it.
+void sayColors(CommandRun& run, const ColorResult& result);
 
 }  // namespace bandvox::app

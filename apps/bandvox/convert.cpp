@@ -192,7 +192,7 @@ void sayResult(CommandRun& run, const ConvertRequest& request, const DensityResu
 /// What goes into the file.
 struct ConvertedGrids {
     DensityResult density;
-    openvdb::Vec3SGrid::Ptr color;  // null unless it was asked for
+    std::optional<ColorResult> color;  ///< if it was asked for
 };
 
 DensityResult meshToDensity(CommandRun& run, const ConvertRequest& request, MeshFile file) {
@@ -223,14 +223,14 @@ DensityResult meshToDensity(CommandRun& run, const ConvertRequest& request, Mesh
 
 ConvertedGrids meshToGrids(CommandRun& run, const ConvertRequest& request) {
     if (!request.color) {
-        return {meshToDensity(run, request, readMesh(request.input, run.progress())), nullptr};
+        return {meshToDensity(run, request, readMesh(request.input, run.progress())), {}};
     }
     // Colours are those of the triangles as read, whatever is done to make a solid of them.
     MeshFile plain;
     const ColoredMesh colored = loadColors(run, request.input, plain);
     DensityResult density = meshToDensity(run, request, std::move(plain));
-    const openvdb::Vec3SGrid::Ptr color = makeColorGrid(run, colored, density, request.density);
-    return {std::move(density), color};
+    ColorResult color = makeColors(run, colored, density, request.density);
+    return {std::move(density), std::move(color)};
 }
 
 DensityResult shapeToDensity(CommandRun& run, const ConvertRequest& request) {
@@ -360,9 +360,8 @@ void runConvert(const CommandLine& line) {
     CommandRun run(line);
     AtomicFile output(request.output);
 
-    ConvertedGrids grids = isShape(request.input)
-                               ? ConvertedGrids{shapeToDensity(run, request), nullptr}
-                               : meshToGrids(run, request);
+    ConvertedGrids grids = isShape(request.input) ? ConvertedGrids{shapeToDensity(run, request), {}}
+                                                  : meshToGrids(run, request);
     DensityResult& result = grids.density;
     requireTolerance(request, result);
     if (request.write.half) {
@@ -372,10 +371,11 @@ void runConvert(const CommandLine& line) {
     }
     setDensityMetadata(*result.grid, result.metadata);
     sayResult(run, request, result);
+    if (grids.color) sayColors(run, *grids.color);
     run.warn(result.warnings, ErrorKind::Result);
 
     openvdb::GridCPtrVec written{result.grid};
-    if (grids.color) written.push_back(grids.color);
+    if (grids.color) written.push_back(grids.color->grid);
     run.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, written, request.write); });
 }
 

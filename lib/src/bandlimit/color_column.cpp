@@ -45,9 +45,8 @@ ColorBlocks ColorColumn::fill(int y, int z, std::span<const std::uint32_t> trian
     for (int x = 0; x < mLayout.count.x(); ++x) {
         progress.throwIfInterrupted();
         const Coord tile(x, y, z);
-        if (lists[x].empty() || !sampleTile(tile, lists[x])) continue;
+        if (lists[x].empty() || !sampleTile(tile, lists[x], blocks)) continue;
         ++blocks.tiles;
-        blocks.samples += static_cast<std::int64_t>(mSamples.size());
         if (!filterArea()) continue;
         for (int channel = 0; channel < 3; ++channel) filterChannel(channel);
         storeTile(mLayout.tileOrigin(tile), leaves);
@@ -57,7 +56,8 @@ ColorBlocks ColorColumn::fill(int y, int z, std::span<const std::uint32_t> trian
 }
 
 // Collects the quadrature points that matter to the tile. Returns false if there are none.
-bool ColorColumn::sampleTile(const Coord& tile, const std::vector<std::uint32_t>& triangles) {
+bool ColorColumn::sampleTile(const Coord& tile, const std::vector<std::uint32_t>& triangles,
+                             ColorBlocks& blocks) {
     const SamplingRegion region{mLayout.voxelSize,
                                 mLayout.tileOrigin(tile).asVec3d() + mFilter.regionOffset(),
                                 openvdb::Vec3d(mPlan.side)};
@@ -66,6 +66,7 @@ bool ColorColumn::sampleTile(const Coord& tile, const std::vector<std::uint32_t>
         sampleColors(mMesh, triangle, region, mPlan.quadrature, mSamples);
     }
     if (mSamples.empty()) return false;
+    blocks.samples += static_cast<std::int64_t>(mSamples.size());
     mLowest = mHighest = mSamples[0].color;
     for (const ColoredSample& sample : mSamples) {
         mLowest = openvdb::math::minComponent(mLowest, sample.color);

@@ -45,7 +45,8 @@ class ColorColumn {
   private:
     using LeafMap = std::map<openvdb::Coord, std::unique_ptr<ColorLeaf>>;
 
-    bool sampleTile(const openvdb::Coord& tile, const std::vector<std::uint32_t>& triangles);
+    bool sampleTile(const openvdb::Coord& tile, const std::vector<std::uint32_t>& triangles,
+                    ColorBlocks& blocks);
     bool filterArea();
     void filterChannel(int channel);
     template <typename Weight>

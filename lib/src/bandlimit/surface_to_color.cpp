@@ -94,10 +94,10 @@ double estimateMemory(const PaintedSurface& surface, const TilePlan& plan, const
                         kPieces * sizeof(openvdb::Vec3f) * area * thickness;
 
     // A tile holds about three times its own cross-section, and of the triangles that much; of a
-    // texture a voxel's face takes some ten points, and a vector grows to twice what it holds.
+    // texture a voxel's face takes some forty points, and a vector grows to twice what it holds.
     const auto triangles = static_cast<double>(surface.triangles.size());
     const double crossSection = static_cast<double>(plan.side) * plan.side;
-    const double samples = 3 * std::max(10 * crossSection, triangles * crossSection / area);
+    const double samples = 3 * std::max(40 * crossSection, triangles * crossSection / area);
     const double perThread = ColorColumn::memory(plan, filter) +
                              2 * (sizeof(ColoredSample) + sizeof(WeightedSample)) * samples;
     const double tilesOfTriangle = 1 + 2.0 * (plan.halo + 1) / plan.interior;

@@ -3,6 +3,7 @@
 #include "source/triangle_sampling.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace bandvox {
@@ -12,9 +13,11 @@ using openvdb::Vec2d;
 using openvdb::Vec3d;
 using openvdb::Vec3f;
 
-/// Longest edge, in voxels, of a part of a textured triangle that takes one rule. Rules know waves
-/// of the lattice; a texture has texels, and the points have to be closer than those.
-constexpr double kTexturedEdge = 1;
+/// Longest edges, in voxels, of a part of a textured triangle for the first rules. Those that are
+/// chosen for the lattice know its waves; a texture has texels, and points have to be closer. Where
+/// texels are farther apart than kFarTexels voxels, three points are enough.
+constexpr std::array<double, 3> kTexturedEdges = {0.25, 0.6, 1};
+constexpr double kFarTexels = 1.5;
 
 /// A corner of a part of a triangle: its place, and its barycentric coordinates on the whole.
 struct BarycentricCorner {
@@ -44,6 +47,7 @@ class PaintSampler {
     }
 
     bool isTextured() const { return mTexture != nullptr; }
+    double texelsPerArea() const { return mTexelsPerArea; }  ///< per voxel²
 
     /// The texture's level for points that stand for so much area each, voxels².
     int levelFor(double areaOfPoint) const {
@@ -72,9 +76,14 @@ class PaintSampler {
     double mTexelsPerArea = 0;
 };
 
-SurfaceQuadrature quadratureFor(const PaintSampler& paint, SurfaceQuadrature quadrature) {
-    if (!paint.isTextured()) return quadrature;
-    for (double& edge : quadrature.triangleEdge) edge = std::min(edge, kTexturedEdge);
+SurfaceQuadrature quadratureFor(const PaintSampler& paint, const SurfaceQuadrature& plain) {
+    if (!paint.isTextured()) return plain;
+    SurfaceQuadrature quadrature;
+    quadrature.triangleEdge.fill(kTexturedEdges.back());
+    quadrature.triangleEdge[0] = kTexturedEdges[0];
+    if (paint.texelsPerArea() * kFarTexels * kFarTexels > 1) {
+        quadrature.triangleEdge[1] = kTexturedEdges[1];
+    }
     return quadrature;
 }
 
