@@ -36,8 +36,7 @@ void DirectColor::add(std::size_t triangle, const std::array<Vec3d, 3>& corner,
     if (length <= mSpacing) {
         const Vec3d middle = (weights[0] + weights[1] + weights[2]) / 3;
         const double area = 0.5 * (corner[1] - corner[0]).cross(corner[2] - corner[0]).length();
-        mPoints.push_back(
-            {(corner[0] + corner[1] + corner[2]) / 3, paint(triangle, middle), area});
+        mPoints.push_back({(corner[0] + corner[1] + corner[2]) / 3, paint(triangle, middle), area});
         return;
     }
     const int a = longest, b = (longest + 1) % 3, c = (longest + 2) % 3;
@@ -64,12 +63,15 @@ DirectColor::Sums DirectColor::sums(const openvdb::Coord& voxel) const {
     return {color / area, h * area / (std::sqrt(pi) * mCutoff)};
 }
 
-double DirectColor::largestError(const openvdb::Vec3SGrid& grid, int stride) const {
+double DirectColor::largestError(const openvdb::Vec3SGrid& grid, int stride,
+                                 double leastShare) const {
     double largest = 0;
     int i = 0;
     for (auto value = grid.cbeginValueOn(); value; ++value) {
         if (i++ % stride != 0) continue;
-        const Vec3d difference = Vec3d(*value) - (*this)(value.getCoord());
+        const Sums truth = sums(value.getCoord());
+        if (truth.share < leastShare) continue;
+        const Vec3d difference = Vec3d(*value) - truth.color;
         for (int k = 0; k < 3; ++k) largest = std::max(largest, std::abs(difference[k]));
     }
     return largest;

@@ -27,8 +27,9 @@ class DirectColor {
     /// h * δ_S as a part of what it is on a flat face.
     double areaShare(const openvdb::Coord& voxel) const { return sums(voxel).share; }
 
-    /// The largest difference of any channel at every `stride`-th active voxel of a grid.
-    double largestError(const openvdb::Vec3SGrid& grid, int stride) const;
+    /// The largest difference of any channel at every `stride`-th active voxel of a grid, of those
+    /// where h * δ_S is at least `leastShare` of what it is on a flat face.
+    double largestError(const openvdb::Vec3SGrid& grid, int stride, double leastShare = 0) const;
 
   private:
     struct Point {

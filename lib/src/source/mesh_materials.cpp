@@ -94,7 +94,7 @@ aiMatrix3x3 gltfTransform(const aiUVTransform& kept) {
     const float offsetY = 0.5F * scale.y * (s + c - 1) + 1 - scale.y - kept.mTranslation.y;
     // From the lower left to the upper left, where glTF begins, and back.
     const aiMatrix3x3 flip(1, 0, 0, 0, -1, 1, 0, 0, 1);
-    const aiMatrix3x3 transform(c * scale.x, -s * scale.y, offsetX, s * scale.x, c * scale.y,
+    const aiMatrix3x3 transform(c * scale.x, s * scale.y, offsetX, -s * scale.x, c * scale.y,
                                 offsetY, 0, 0, 1);
     return flip * transform * flip;
 }

@@ -108,10 +108,11 @@ std::shared_ptr<const Texture> readTexture(const std::filesystem::path& path) {
 
 std::shared_ptr<const Texture> readTexture(std::span<const std::byte> bytes,
                                            const std::string& kind) {
-    const OIIO::ImageSpec config = unmultiplied();
+    OIIO::ImageSpec config = unmultiplied();
     OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
-    return readPicture(
-        OIIO::ImageInput::open("texture." + kindOf(bytes, kind), &config, &reader).get());
+    OIIO::Filesystem::IOProxy* proxy = &reader;
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    return readPicture(OIIO::ImageInput::open("texture." + kindOf(bytes, kind), &config).get());
 }
 
 }  // namespace bandvox
