@@ -9,23 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <openvdb/openvdb.h>
 
-#include <sstream>
-
 namespace bandvox::app_test {
 namespace {
 
 using Json = nlohmann::json;
-
-/// A cube [-1, 1]³ whose points are of one colour below and of another above.
-std::string coloredCubeObj() {
-    std::istringstream lines(cubeObj());
-    std::string text;
-    for (std::string line; std::getline(lines, line);) {
-        if (line.starts_with("v ")) line += line.ends_with("-1") ? " 1 0 0" : " 0 0 1";
-        text += line + "\n";
-    }
-    return text;
-}
 
 openvdb::Vec3SGrid::Ptr readColors(const std::filesystem::path& path) {
     for (const auto& grid : readVdb(path)) {
