@@ -6,6 +6,10 @@
 #include <bandvox/core/error.h>
 #include <bandvox/source/colored_mesh.h>
 
+#include <assimp/Exporter.hpp>
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -101,6 +105,10 @@ TEST(ColoredMesh, ObjPointsHaveColorsBehindTheirPlaces) {
     const fs::path bytes =
         folder.write("b.obj", "v 0 0 0 255 0 0\nv 1 0 0 0 255 0\nv 0 1 0 10 20 255\nf 1 2 3\n");
     expectColor(colorAt(readColoredMesh(bytes).colored, 0, 2), linearOf(10, 20, 255));
+    // A little above 1 is 1.
+    const fs::path above =
+        folder.write("c.obj", "v 0 0 0 1.0001 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0.5 0.5 1\nf 1 2 3\n");
+    expectColor(colorAt(readColoredMesh(above).colored, 0, 0), Vec3f(1, 0, 0));
 }
 
 TEST(ColoredMesh, GltfColorsAreLinearAndMultiply) {
@@ -244,6 +252,37 @@ TEST(ColoredMesh, GltfMayTransformTextureCoordinates) {
         const Vec2d uv = expected(given[k].x(), given[k].y());
         EXPECT_NEAR(file.colored.paints[0].uv[k].x(), uv.x(), 1e-5) << k;
         EXPECT_NEAR(file.colored.paints[0].uv[k].y(), uv.y(), 1e-5) << k;
+    }
+}
+
+// What the importer's own exporter makes of a textured square and a plain one.
+TEST(ColoredMesh, OtherFormatsSayTheSame) {
+    const TemporaryFolder folder;
+    test::writePicture(folder.path() / "skin.png", 1, 1, 3, {20, 188, 255});
+    folder.write("skin.mtl",
+                 "newmtl skin\nKd 1 1 1\nmap_Kd skin.png\nnewmtl red\nKd 0.9 0.1 0.1\n");
+    const fs::path obj = folder.write("a.obj", test::texturedSquareObj() +
+                                                   "v 0 0 1\nv 1 0 1\nv 0 1 1\nusemtl red\n"
+                                                   "f 5/1 6/2 7/3\n");
+    Assimp::Importer importer;
+    const aiScene* scene = importer.ReadFile(obj.string(), aiProcess_Triangulate);
+    ASSERT_NE(scene, nullptr);
+    for (const auto& [format, name] :
+         {std::pair("collada", "b.dae"), {"fbxa", "b.fbx"}, {"glb2", "b.glb"}}) {
+        Assimp::Exporter exporter;
+        ASSERT_EQ(exporter.Export(scene, format, (folder.path() / name).string()), AI_SUCCESS);
+        const ColoredMeshFile file = readColoredMesh(folder.path() / name);
+        ASSERT_EQ(file.triangles, 3u) << format;
+        EXPECT_TRUE(file.warnings.empty()) << format << " " << file.warnings[0];
+        SCOPED_TRACE(format);
+        expectColor(colorAt(file.colored, 0, 0), linearOf(20, 188, 255));
+        // Numbers are kept as they are, and glTF takes them for linear.
+        const bool isGltf = std::string(format) == "glb2";
+        const Vec3f red = isGltf ? Vec3f(0.9F, 0.1F, 0.1F)
+                                 : Vec3f(static_cast<float>(linearOfSrgb(0.9)),
+                                         static_cast<float>(linearOfSrgb(0.1)),
+                                         static_cast<float>(linearOfSrgb(0.1)));
+        expectColor(colorAt(file.colored, 2, 0), red);
     }
 }
 

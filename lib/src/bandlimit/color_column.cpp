@@ -75,12 +75,12 @@ bool ColorColumn::sampleTile(const Coord& tile, const std::vector<std::uint32_t>
     return true;
 }
 
-// Filters the samples with weights weightOf(sample); what comes out lies in the buffer.
+// Filters the samples with weights weigh(sample); what comes out lies in the buffer.
 template <typename Weight>
-void ColorColumn::filterWeights(const Weight& weightOf) {
+void ColorColumn::filterWeights(const Weight& weigh) {
     mWeighted.clear();
     for (const ColoredSample& sample : mSamples) {
-        mWeighted.push_back({sample.position, weightOf(sample)});
+        mWeighted.push_back({sample.position, weigh(sample)});
     }
     std::fill_n(mBuffer.get(), mFilter.bufferSize(), 0.0F);
     mFilter.spread(std::span<const WeightedSample>(mWeighted), mBuffer.get());
@@ -129,22 +129,22 @@ void ColorColumn::filterChannel(int channel) {
 
 void ColorColumn::storeTile(const Coord& tileOrigin, LeafMap& leaves) const {
     const int interior = mPlan.interior;
-    forEachBlock(
-        openvdb::CoordBBox::createCube(tileOrigin, interior), [&](const openvdb::CoordBBox& part) {
-            ColorLeaf* leaf = nullptr;
-            for (auto voxel = part.begin(); voxel; ++voxel) {
-                const Coord at = *voxel - tileOrigin;
-                const std::size_t i =
-                    (static_cast<std::size_t>(at.x()) * interior + at.y()) * interior + at.z();
-                if (!(mArea[i] > mLeastArea)) continue;
-                if (leaf == nullptr) {
-                    auto& place = leaves[part.min() & ~(ColorLeaf::DIM - 1)];
-                    if (!place) place = std::make_unique<ColorLeaf>(*voxel, Vec3f(0));
-                    leaf = place.get();
-                }
-                leaf->setValueOn(*voxel, mColor[i]);
+    const auto storePart = [&](const openvdb::CoordBBox& part) {
+        ColorLeaf* leaf = nullptr;
+        for (auto voxel = part.begin(); voxel; ++voxel) {
+            const Coord at = *voxel - tileOrigin;
+            const std::size_t i =
+                (static_cast<std::size_t>(at.x()) * interior + at.y()) * interior + at.z();
+            if (!(mArea[i] > mLeastArea)) continue;
+            if (leaf == nullptr) {
+                auto& place = leaves[part.min() & ~(ColorLeaf::DIM - 1)];
+                if (!place) place = std::make_unique<ColorLeaf>(*voxel, Vec3f(0));
+                leaf = place.get();
             }
-        });
+            leaf->setValueOn(*voxel, mColor[i]);
+        }
+    };
+    forEachBlock(openvdb::CoordBBox::createCube(tileOrigin, interior), storePart);
 }
 
 }  // namespace bandvox

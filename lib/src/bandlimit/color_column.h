@@ -50,7 +50,7 @@ class ColorColumn {
     bool filterArea();
     void filterChannel(int channel);
     template <typename Weight>
-    void filterWeights(const Weight& weightOf);
+    void filterWeights(const Weight& weigh);
     void storeTile(const openvdb::Coord& tileOrigin, LeafMap& leaves) const;
 
     const ColoredMesh& mMesh;

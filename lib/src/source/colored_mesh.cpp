@@ -5,6 +5,7 @@
 #include <bandvox/core/error.h>
 #include <bandvox/source/colored_mesh.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -24,14 +25,18 @@ void requireFinite(bool isFinite, const char* what, unsigned point, const aiMesh
                          std::to_string(point) + " of object " + mesh.mName.C_Str());
 }
 
-/// Values above 1 are taken for whole numbers up to 255, as some programs write them.
+/// Whole numbers of which some are above 1 are taken to count to 255, as some programs write them.
 float scaleOf(const aiMesh& mesh, const ColorConvention& convention) {
     if (convention.isGltf) return 1;
+    float highest = 0;
     for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
         const aiColor4D& c = mesh.mColors[0][i];
-        if (c.r > 1 || c.g > 1 || c.b > 1) return 1.0F / 255;
+        for (const float value : {c.r, c.g, c.b}) {
+            if (value != std::floor(value)) return 1;
+            highest = std::max(highest, value);
+        }
     }
-    return 1;
+    return highest > 1 ? 1.0F / 255 : 1;
 }
 
 /// The colours of a mesh's points, in linear light; empty if it has none.
