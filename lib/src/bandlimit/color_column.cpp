@@ -12,6 +12,12 @@ namespace bandvox {
 using openvdb::Coord;
 using openvdb::Vec3f;
 
+namespace {
+
+constexpr int kArea = -1;  // stands for the area where channels are named
+
+}  // namespace
+
 ColorColumn::ColorColumn(const ColoredMesh& mesh, const TilePlan& plan, const TileLayout& layout,
                          const TileFilter& filter, float leastArea)
     : mMesh(mesh),
@@ -19,12 +25,13 @@ ColorColumn::ColorColumn(const ColoredMesh& mesh, const TilePlan& plan, const Ti
       mLayout(layout),
       mFilter(filter),
       mLeastArea(leastArea),
-      mBuffer(filter.allocate()),
+      mBuffers{filter.allocate(), filter.allocate()},
+      mScratch(2 * filter.bufferSize(), 0.0F),
       mArea(static_cast<std::size_t>(plan.interior) * plan.interior * plan.interior),
       mColor(mArea.size()) {}
 
 double ColorColumn::memory(const TilePlan& plan, const TileFilter& filter) {
-    return sizeof(float) * static_cast<double>(filter.bufferSize()) +
+    return 4 * sizeof(float) * static_cast<double>(filter.bufferSize()) +
            (sizeof(float) + sizeof(Vec3f)) * std::pow(plan.interior, 3);
 }
 
@@ -47,8 +54,12 @@ ColorBlocks ColorColumn::fill(int y, int z, std::span<const std::uint32_t> trian
         const Coord tile(x, y, z);
         if (lists[x].empty() || !sampleTile(tile, lists[x], blocks)) continue;
         ++blocks.tiles;
-        if (!filterArea()) continue;
-        for (int channel = 0; channel < 3; ++channel) filterChannel(channel);
+        filterPair({kArea, 0});
+        if (!keepArea()) continue;
+        keepChannel(0, mBuffers[1].get());
+        if (!isOneValue(1) || !isOneValue(2)) filterPair({1, 2});
+        keepChannel(1, mBuffers[0].get());
+        keepChannel(2, mBuffers[1].get());
         storeTile(mLayout.tileOrigin(tile), leaves);
     }
     for (auto& [origin, leaf] : leaves) blocks.leaves.push_back(std::move(leaf));
@@ -75,53 +86,56 @@ bool ColorColumn::sampleTile(const Coord& tile, const std::vector<std::uint32_t>
     return true;
 }
 
-// Filters the samples with weights weigh(sample); what comes out lies in the buffer.
-template <typename Weight>
-void ColorColumn::filterWeights(const Weight& weigh) {
-    mWeighted.clear();
+// Filters the samples with two of the weights that there are; what comes out lies in the buffers.
+// Channels count from the middle of their values in the tile: one colour comes out as it is, and
+// errors count by how much colours differ.
+void ColorColumn::filterPair(const std::array<int, 2>& channels) {
+    const auto weigh = [&](const ColoredSample& sample, int channel) {
+        if (channel == kArea) return sample.area;
+        return sample.area * (sample.color[channel] - middleOf(channel));
+    };
+    mPairs.clear();
     for (const ColoredSample& sample : mSamples) {
-        mWeighted.push_back({sample.position, weigh(sample)});
+        mPairs.push_back(
+            {sample.position, {weigh(sample, channels[0]), weigh(sample, channels[1])}});
     }
-    std::fill_n(mBuffer.get(), mFilter.bufferSize(), 0.0F);
-    mFilter.spread(std::span<const WeightedSample>(mWeighted), mBuffer.get());
-    mFilter.apply(mBuffer.get());
+    for (const FftBuffer& buffer : mBuffers) {
+        std::fill_n(buffer.get(), mFilter.bufferSize(), 0.0F);
+    }
+    mFilter.spread(mPairs, mScratch.data(), {mBuffers[0].get(), mBuffers[1].get()});
+    for (int i = 0; i < 2; ++i) {
+        if (channels[i] == kArea || !isOneValue(channels[i])) mFilter.apply(mBuffers[i].get());
+    }
 }
 
-// Computes the denominator. Returns false if it is too small for a colour everywhere.
-bool ColorColumn::filterArea() {
-    filterWeights([](const ColoredSample& sample) { return sample.area; });
+// Keeps the denominator. Returns false if it is too small for a colour everywhere.
+bool ColorColumn::keepArea() {
     const int interior = mPlan.interior;
     float* to = mArea.data();
     for (int x = 0; x < interior; ++x) {
         for (int y = 0; y < interior; ++y) {
-            to = std::copy_n(mFilter.row(mBuffer.get(), x, y), interior, to);
+            to = std::copy_n(mFilter.row(mBuffers[0].get(), x, y), interior, to);
         }
     }
     return std::any_of(mArea.begin(), mArea.end(), [&](float area) { return area > mLeastArea; });
 }
 
-// Computes one channel's quotients. They are taken of differences from a colour in the middle of
-// those of the tile, so that one colour comes out as it is, and errors count by how much colours
-// differ. A mean of colours lies between them, whatever rounding does.
-void ColorColumn::filterChannel(int channel) {
+// Computes one channel's quotients. A mean of colours lies between them, whatever rounding does.
+void ColorColumn::keepChannel(int channel, const float* buffer) {
     const float low = mLowest[channel];
     const float high = mHighest[channel];
-    if (low == high) {
+    if (isOneValue(channel)) {
         for (Vec3f& color : mColor) color[channel] = low;
         return;
     }
-    const float middle = 0.5F * (low + high);
-    filterWeights([&](const ColoredSample& sample) {
-        return sample.area * (sample.color[channel] - middle);
-    });
     const int interior = mPlan.interior;
     std::size_t i = 0;
     for (int x = 0; x < interior; ++x) {
         for (int y = 0; y < interior; ++y) {
-            const float* row = mFilter.row(mBuffer.get(), x, y);
+            const float* row = mFilter.row(buffer, x, y);
             for (int z = 0; z < interior; ++z, ++i) {
                 if (!(mArea[i] > mLeastArea)) continue;
-                mColor[i][channel] = std::clamp(middle + row[z] / mArea[i], low, high);
+                mColor[i][channel] = std::clamp(middleOf(channel) + row[z] / mArea[i], low, high);
             }
         }
     }

@@ -9,6 +9,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -47,10 +48,11 @@ class ColorColumn {
 
     bool sampleTile(const openvdb::Coord& tile, const std::vector<std::uint32_t>& triangles,
                     ColorBlocks& blocks);
-    bool filterArea();
-    void filterChannel(int channel);
-    template <typename Weight>
-    void filterWeights(const Weight& weigh);
+    void filterPair(const std::array<int, 2>& channels);
+    bool keepArea();
+    void keepChannel(int channel, const float* buffer);
+    bool isOneValue(int channel) const { return mLowest[channel] == mHighest[channel]; }
+    float middleOf(int channel) const { return 0.5F * (mLowest[channel] + mHighest[channel]); }
     void storeTile(const openvdb::Coord& tileOrigin, LeafMap& leaves) const;
 
     const ColoredMesh& mMesh;
@@ -58,9 +60,10 @@ class ColorColumn {
     const TileLayout& mLayout;
     const TileFilter& mFilter;
     float mLeastArea;
-    FftBuffer mBuffer;
+    std::array<FftBuffer, 2> mBuffers;
+    std::vector<float> mScratch;  // of both while samples are spread, all zero else
     std::vector<ColoredSample> mSamples;
-    std::vector<WeightedSample> mWeighted;
+    std::vector<PairedSample> mPairs;
     openvdb::Vec3f mLowest, mHighest;    // of the samples' colours
     std::vector<float> mArea;            // [interior]³: h * δ_S
     std::vector<openvdb::Vec3f> mColor;  // [interior]³

@@ -32,13 +32,13 @@ template <int kLanes>
     return first;
 }
 
-template <int kLanes, typename Sample>
-[[gnu::always_inline]] inline void spread(std::span<const Sample> samples, float offset,
+template <int kLanes>
+[[gnu::always_inline]] inline void spread(std::span<const SurfaceSample> samples, float offset,
                                           const KernelPolynomials& kernel,
                                           const SpreadLattice& lattice) {
     alignas(64) float wx[kLanes], wy[kLanes], wz[kLanes];
-    for (const Sample& sample : samples) {
-        const float weight = weightOf(sample);
+    for (const SurfaceSample& sample : samples) {
+        const float weight = -sample.areaVector.x();
         if (weight == 0) continue;
         const int x = axisWeights<kLanes>(kernel, sample.position.x() + offset, wx);
         const int y = axisWeights<kLanes>(kernel, sample.position.y() + offset, wy);
@@ -56,7 +56,43 @@ template <int kLanes, typename Sample>
     }
 }
 
-// The functions that are compiled for several instruction sets cannot be templates.
+// So many floats in a row, added to others at once: of a loop over sixteen products the compiler
+// makes as many single ones.
+template <int kCount>
+struct FloatRow {
+    typedef float Type
+        __attribute__((vector_size(kCount * sizeof(float)), aligned(alignof(float)), may_alias));
+};
+
+// The two weights go into the rows, so that one row of products serves both sums.
+template <int kLanes>
+[[gnu::always_inline]] inline void spreadPairs(std::span<const PairedSample> samples, float offset,
+                                               const KernelPolynomials& kernel,
+                                               const SpreadLattice& lattice) {
+    alignas(64) float wx[kLanes], wy[kLanes], wz[kLanes];
+    using Row = typename FloatRow<2 * kLanes>::Type;
+    Row both{};
+    for (const PairedSample& sample : samples) {
+        const int x = axisWeights<kLanes>(kernel, sample.position.x() + offset, wx);
+        const int y = axisWeights<kLanes>(kernel, sample.position.y() + offset, wy);
+        const int z = axisWeights<kLanes>(kernel, sample.position.z() + offset, wz);
+        for (int k = 0; k < kLanes; ++k) {
+            both[2 * k] = sample.weights[0] * wz[k];
+            both[2 * k + 1] = sample.weights[1] * wz[k];
+        }
+        for (int i = 0; i < kernel.width; ++i) {
+            float* row =
+                lattice.nodes +
+                2 * ((static_cast<std::ptrdiff_t>(x + i) * lattice.yCount + y) * lattice.zStride +
+                     z);
+            for (int j = 0; j < kernel.width; ++j, row += 2 * lattice.zStride) {
+                const float line = wx[i] * wy[j];
+                *reinterpret_cast<Row*>(row) += line * both;
+            }
+        }
+    }
+}
+
 BANDVOX_FOR_EACH_INSTRUCTION_SET
 void spreadNarrow(std::span<const SurfaceSample> samples, float offset,
                   const KernelPolynomials& kernel, const SpreadLattice& lattice) {
@@ -70,15 +106,15 @@ void spreadWide(std::span<const SurfaceSample> samples, float offset,
 }
 
 BANDVOX_FOR_EACH_INSTRUCTION_SET
-void spreadNarrowWeights(std::span<const WeightedSample> samples, float offset,
-                         const KernelPolynomials& kernel, const SpreadLattice& lattice) {
-    spread<8>(samples, offset, kernel, lattice);
+void spreadNarrowPairs(std::span<const PairedSample> samples, float offset,
+                       const KernelPolynomials& kernel, const SpreadLattice& lattice) {
+    spreadPairs<8>(samples, offset, kernel, lattice);
 }
 
 BANDVOX_FOR_EACH_INSTRUCTION_SET
-void spreadWideWeights(std::span<const WeightedSample> samples, float offset,
-                       const KernelPolynomials& kernel, const SpreadLattice& lattice) {
-    spread<16>(samples, offset, kernel, lattice);
+void spreadWidePairs(std::span<const PairedSample> samples, float offset,
+                     const KernelPolynomials& kernel, const SpreadLattice& lattice) {
+    spreadPairs<16>(samples, offset, kernel, lattice);
 }
 
 KernelPolynomials polynomialsOf(const SpreadingKernel& kernel) {
@@ -93,9 +129,9 @@ void spreadSamples(std::span<const SurfaceSample> samples, float offset,
     spreadAll(samples, offset, polynomialsOf(kernel), lattice);
 }
 
-void spreadSamples(std::span<const WeightedSample> samples, float offset,
+void spreadSamples(std::span<const PairedSample> samples, float offset,
                    const SpreadingKernel& kernel, const SpreadLattice& lattice) {
-    const auto spreadAll = kernel.paddedWidth() == 8 ? spreadNarrowWeights : spreadWideWeights;
+    const auto spreadAll = kernel.paddedWidth() == 8 ? spreadNarrowPairs : spreadWidePairs;
     spreadAll(samples, offset, polynomialsOf(kernel), lattice);
 }
 

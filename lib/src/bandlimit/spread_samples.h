@@ -14,26 +14,21 @@ struct SpreadLattice {
     int zStride;
 };
 
-/// A place with a weight that is to be spread.
-struct WeightedSample {
-    openvdb::Vec3f position;  ///< voxels, from the origin of the region it was asked for
-    float weight;
-};
-
-/// What a sample of a surface weighs for the difference along x: -n_x dA.
-inline float weightOf(const SurfaceSample& sample) {
-    return -sample.areaVector.x();
-}
-inline float weightOf(const WeightedSample& sample) {
-    return sample.weight;
-}
-
-/// Adds to each node l of the lattice  Σ_j w_j ψ(l - y_j), for samples at y_j (positions plus
-/// `offset` on every axis, voxels) of weight w_j (see weightOf). Every sample's nodes must lie on
-/// the lattice; kernel.paddedWidth() nodes are touched along z.
+/// Adds to each node l of the lattice  Σ_j -n_x dA_j ψ(l - y_j), for samples at y_j (positions
+/// plus `offset` on every axis, voxels) with area vector n dA. Every sample's nodes must lie
+/// on the lattice; kernel.paddedWidth() nodes are touched along z.
 void spreadSamples(std::span<const SurfaceSample> samples, float offset,
                    const SpreadingKernel& kernel, const SpreadLattice& lattice);
-void spreadSamples(std::span<const WeightedSample> samples, float offset,
+
+/// A place with two weights that are to be spread.
+struct PairedSample {
+    openvdb::Vec3f position;  ///< voxels, from the origin of the region it was asked for
+    float weights[2];
+};
+
+/// The same for two sums at once, with these weights for -n_x dA: nodes are pairs, the first of
+/// them at 2·((x·yCount + y)·zStride + z). Each of them is as if it were alone.
+void spreadSamples(std::span<const PairedSample> samples, float offset,
                    const SpreadingKernel& kernel, const SpreadLattice& lattice);
 
 }  // namespace bandvox

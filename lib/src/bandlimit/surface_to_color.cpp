@@ -99,7 +99,7 @@ double estimateMemory(const PaintedSurface& surface, const TilePlan& plan, const
     const double crossSection = static_cast<double>(plan.side) * plan.side;
     const double samples = 3 * std::max(40 * crossSection, triangles * crossSection / area);
     const double perThread = ColorColumn::memory(plan, filter) +
-                             2 * (sizeof(ColoredSample) + sizeof(WeightedSample)) * samples;
+                             2 * (sizeof(ColoredSample) + sizeof(PairedSample)) * samples;
     const double tilesOfTriangle = 1 + 2.0 * (plan.halo + 1) / plan.interior;
     const double bins = sizeof(std::uint32_t) * triangles * tilesOfTriangle * tilesOfTriangle;
     return grid + bins + memoryOfColumns(layout) + threadCount() * perThread;

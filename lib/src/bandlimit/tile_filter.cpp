@@ -61,8 +61,7 @@ openvdb::Vec3d TileFilter::regionOffset() const {
     return openvdb::Vec3d(-mPlan.halo - 1, -mPlan.halo, -mPlan.halo);
 }
 
-template <typename Sample>
-void TileFilter::spreadInParts(std::span<const Sample> samples, float* buffer) const {
+void TileFilter::spread(std::span<const SurfaceSample> samples, float* buffer) const {
     const auto offset = static_cast<float>(mShift);
     const SpreadLattice lattice{buffer, mFft.yCount(), mFft.zStride()};
     if (samples.size() <= kFewSamples) {
@@ -80,8 +79,17 @@ void TileFilter::spreadInParts(std::span<const Sample> samples, float* buffer) c
     }
 }
 
-template void TileFilter::spreadInParts(std::span<const SurfaceSample>, float*) const;
-template void TileFilter::spreadInParts(std::span<const WeightedSample>, float*) const;
+void TileFilter::spread(std::span<const PairedSample> samples, float* scratch,
+                        const std::array<float*, 2>& buffers) const {
+    const auto offset = static_cast<float>(mShift);
+    const std::size_t together = samples.size() <= kFewSamples ? samples.size() : kSamplesTogether;
+    while (!samples.empty()) {
+        const auto some = samples.first(std::min(samples.size(), together));
+        samples = samples.subspan(some.size());
+        spreadSamples(some, offset, mPlan.kernel, {scratch, mFft.yCount(), mFft.zStride()});
+        movePairs(nodesUnder(some), scratch, buffers);
+    }
+}
 
 // The nodes that samples may have been spread to.
 template <typename Sample>
@@ -109,6 +117,25 @@ void TileFilter::moveNodes(const openvdb::CoordBBox& nodes, float* part, float* 
                 nodes.min().z();
             for (int z = 0; z < length; ++z) buffer[row + z] += part[row + z];
             std::fill_n(part + row, length, 0.0F);
+        }
+    }
+}
+
+// The same for pairs, each of the two to its own buffer.
+void TileFilter::movePairs(const openvdb::CoordBBox& nodes, float* part,
+                           const std::array<float*, 2>& buffers) const {
+    const int length = nodes.dim().z();
+    for (int x = nodes.min().x(); x <= nodes.max().x(); ++x) {
+        for (int y = nodes.min().y(); y <= nodes.max().y(); ++y) {
+            const std::size_t row =
+                (static_cast<std::size_t>(x) * mFft.yCount() + y) * mFft.zStride() +
+                nodes.min().z();
+            float* pairs = part + 2 * row;
+            for (int z = 0; z < length; ++z) {
+                buffers[0][row + z] += pairs[2 * z];
+                buffers[1][row + z] += pairs[2 * z + 1];
+            }
+            std::fill_n(pairs, 2 * length, 0.0F);
         }
     }
 }

@@ -4,6 +4,7 @@
 #include "bandlimit/tile_plan.h"
 #include "spectral/fft.h"
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -29,12 +30,12 @@ class TileFilter {
 
     /// Spreads the samples (positions from the region's beginning) onto the buffer, which must
     /// be all zero.
-    void spread(std::span<const SurfaceSample> samples, float* buffer) const {
-        spreadInParts(samples, buffer);
-    }
-    void spread(std::span<const WeightedSample> samples, float* buffer) const {
-        spreadInParts(samples, buffer);
-    }
+    void spread(std::span<const SurfaceSample> samples, float* buffer) const;
+
+    /// The same for two weights, each onto a buffer of its own. `scratch` has twice a buffer's
+    /// size; it must be all zero, and is again.
+    void spread(std::span<const PairedSample> samples, float* scratch,
+                const std::array<float*, 2>& buffers) const;
 
     /// Turns what was spread into the values, or into f~(x, y, z) - f~(x - 1, y, z). Elsewhere than
     /// in the interior, what is left in the buffer has no meaning.
@@ -50,10 +51,10 @@ class TileFilter {
 
   private:
     template <typename Sample>
-    void spreadInParts(std::span<const Sample> samples, float* buffer) const;
-    template <typename Sample>
     openvdb::CoordBBox nodesUnder(std::span<const Sample> samples) const;
     void moveNodes(const openvdb::CoordBBox& nodes, float* part, float* buffer) const;
+    void movePairs(const openvdb::CoordBBox& nodes, float* part,
+                   const std::array<float*, 2>& buffers) const;
     void fold(float* buffer) const;
     void multiply(float* buffer) const;
 
