@@ -1,5 +1,6 @@
 // bandvox convert: a mesh or a built-in shape to a band-limited density in a .vdb file.
 
+#include "color_grid.h"
 #include "command_run.h"
 #include "commands.h"
 #include "solid_input.h"
@@ -42,6 +43,7 @@ struct ConvertRequest {
     Route route = Route::Auto;
     Overlap overlap = Overlap::Union;
     DensityOptions density;
+    bool color = false;
     std::optional<int> oversample;
     std::optional<double> samplingTolerance;  ///< if it was asked for
     VdbWriteOptions write;
@@ -105,6 +107,11 @@ ConvertRequest parseConvert(const CommandLine& line) {
     request.overlap = static_cast<Overlap>(line.choice("overlap", {"union", "sum"}, 0));
     density.sumOverlaps = request.overlap == Overlap::Sum;
 
+    request.color = line.has("color");
+    if (request.color && isShape(request.input)) {
+        throw Error(ErrorKind::Usage, "--color takes a mesh with colours, and '" + request.input +
+                                          "' is a built-in shape, which has none");
+    }
     request.write.half = line.has("half");
     request.write.compression = readCompression(line);
     return request;
@@ -182,11 +189,17 @@ void sayResult(CommandRun& run, const ConvertRequest& request, const DensityResu
     run.count("grid_volume", metadata.gridVolume);
 }
 
-DensityResult meshToDensity(CommandRun& run, const ConvertRequest& request) {
+/// What goes into the file.
+struct ConvertedGrids {
+    DensityResult density;
+    std::optional<ColorResult> color;  ///< if it was asked for
+};
+
+DensityResult meshToDensity(CommandRun& run, const ConvertRequest& request, MeshFile file) {
     const Capping capping = request.route == Route::Exact     ? Capping::All
                             : request.route == Route::Winding ? Capping::None
                                                               : Capping::Sensible;
-    SolidMesh mesh = loadSolidMesh(run, request.input, {capping, request.overlap});
+    SolidMesh mesh = makeSolidMesh(run, request.input, std::move(file), {capping, request.overlap});
     DensityResult result;
     if (mesh.soup.triangles.empty()) {
         const MeshSource source(mesh.name, std::move(mesh.solid));
@@ -206,6 +219,18 @@ DensityResult meshToDensity(CommandRun& run, const ConvertRequest& request) {
     }
     result.metadata.holesCapped = mesh.holesCapped;
     return result;
+}
+
+ConvertedGrids meshToGrids(CommandRun& run, const ConvertRequest& request) {
+    if (!request.color) {
+        return {meshToDensity(run, request, readMesh(request.input, run.progress())), {}};
+    }
+    // Colours are those of the triangles as read, whatever is done to make a solid of them.
+    MeshFile plain;
+    const ColoredMesh colored = loadColors(run, request.input, plain);
+    DensityResult density = meshToDensity(run, request, std::move(plain));
+    ColorResult color = makeColors(run, colored, density, request.density);
+    return {std::move(density), std::move(color)};
 }
 
 DensityResult shapeToDensity(CommandRun& run, const ConvertRequest& request) {
@@ -304,6 +329,11 @@ const CommandTable& convertTable() {
                  filter},
                 {"iso", 0, "D", formatNumber(density.iso),
                  "Density that is the surface, for the commands that come after.", filter},
+                {"color", 0, "", "",
+                 "Write the colours of the mesh beside its density, as a grid Cd: those of its "
+                 "points, else of its materials and their textures, in linear light, filtered as "
+                 "the density is.",
+                 "Output"},
                 vdbOutputEntry(),
                 {"half", 0, "", "",
                  "Store 16-bit values, which changes densities by up to 2.5e-4, above 1 by 5e-4.",
@@ -315,6 +345,8 @@ const CommandTable& convertTable() {
                  "512 voxels along the bunny's longest side."},
                 {"bandvox convert shape:torus -o torus.vdb --order 4 --cutoff 0.25",
                  "A sharper filter, that keeps more detail and rings by 5 %."},
+                {"bandvox convert spot.obj -o spot.vdb --color",
+                 "The density, and the colours of the surface around it."},
                 {"bandvox convert part.stl -o part.vdb --voxel-size 0.1 --strict",
                  "Voxels of a given size, and no result if anything about the mesh is doubtful."},
             }};
@@ -328,8 +360,9 @@ void runConvert(const CommandLine& line) {
     CommandRun run(line);
     AtomicFile output(request.output);
 
-    DensityResult result =
-        isShape(request.input) ? shapeToDensity(run, request) : meshToDensity(run, request);
+    ConvertedGrids grids = isShape(request.input) ? ConvertedGrids{shapeToDensity(run, request), {}}
+                                                  : meshToGrids(run, request);
+    DensityResult& result = grids.density;
     requireTolerance(request, result);
     if (request.write.half) {
         // What is stated has to hold for what is in the file.
@@ -338,10 +371,12 @@ void runConvert(const CommandLine& line) {
     }
     setDensityMetadata(*result.grid, result.metadata);
     sayResult(run, request, result);
+    if (grids.color) sayColors(run, *grids.color);
     run.warn(result.warnings, ErrorKind::Result);
 
-    run.writeOutput(output,
-                    [&](AtomicFile& file) { writeVdb(file, {result.grid}, request.write); });
+    openvdb::GridCPtrVec written{result.grid};
+    if (grids.color) written.push_back(grids.color->grid);
+    run.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, written, request.write); });
 }
 
 }  // namespace bandvox::app

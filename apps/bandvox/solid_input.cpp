@@ -87,8 +87,12 @@ void requireMeshOrShape(const std::string& verb, const std::string& input) {
 
 SolidMesh loadSolidMesh(CommandRun& run, const std::string& input,
                         const SolidMeshOptions& options) {
+    return makeSolidMesh(run, input, readMesh(input, run.progress()), options);
+}
+
+SolidMesh makeSolidMesh(CommandRun& run, const std::string& input, MeshFile file,
+                        const SolidMeshOptions& options) {
     const std::filesystem::path path = input;
-    MeshFile file = readMesh(path, run.progress());
     run.say("read     " + path.string() + ": " +
             formatCount(static_cast<std::int64_t>(file.mesh.points.size()), "point", "points") +
             ", " +

@@ -5,6 +5,7 @@
 
 #include <bandvox/source/close_mesh.h>
 #include <bandvox/source/mesh.h>
+#include <bandvox/source/read_mesh.h>
 
 #include <string>
 
@@ -36,5 +37,9 @@ struct SolidMeshOptions {
 
 /// Reads a mesh and makes it the boundary of a solid; says and counts what was found and done.
 SolidMesh loadSolidMesh(CommandRun& run, const std::string& input, const SolidMeshOptions& options);
+
+/// The same of a file that has been read.
+SolidMesh makeSolidMesh(CommandRun& run, const std::string& input, MeshFile file,
+                        const SolidMeshOptions& options);
 
 }  // namespace bandvox::app

@@ -36,6 +36,7 @@ TEST(Readme, RunnableBlocksRun) {
     ASSERT_GE(blocks.size(), 5u);
     const TemporaryFolder folder;
     writeText(folder / "bunny.obj", cubeObj());
+    writeText(folder / "painted.obj", coloredCubeObj());
     const std::string path =
         "PATH=" + fs::path(BANDVOX_EXECUTABLE).parent_path().string() + ":$PATH\n";
     for (const std::string& block : blocks) {
@@ -44,7 +45,7 @@ TEST(Readme, RunnableBlocksRun) {
         EXPECT_EQ(result.status, 0) << block << result.err;
     }
     for (const char* name : {"bunny.vdb", "bunny.png", "bunny.exr", "bunny.json", "sharp.vdb",
-                             "voxels.png", "piped.png"}) {
+                             "voxels.png", "piped.png", "painted.vdb"}) {
         EXPECT_TRUE(fs::exists(folder / name)) << name;
     }
 }

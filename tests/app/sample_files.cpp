@@ -69,6 +69,16 @@ std::string openCubeObj() {
     return obj(kSides.size() - 1);
 }
 
+std::string coloredCubeObj() {
+    std::istringstream lines(cubeObj());
+    std::string text;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("v ")) line += line.ends_with("-1") ? " 1 0 0" : " 0 0 1";
+        text += line + "\n";
+    }
+    return text;
+}
+
 std::string cubePly() {
     std::ostringstream text;
     text << "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\n"

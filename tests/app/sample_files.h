@@ -9,6 +9,8 @@ namespace bandvox::app_test {
 std::string cubeObj();
 /// The same without the face at z = 1: one hole of four edges.
 std::string openCubeObj();
+/// The same cube; its points are red below, at z = -1, and blue above.
+std::string coloredCubeObj();
 /// The same cube, triangles only, as text of other formats.
 std::string cubePly();
 std::string cubeStlAscii();

@@ -13,10 +13,17 @@ TileRange tilesTouching(const TileLayout& layout, int halo, int axis, double low
 }
 
 ElementBins::ElementBins(const BoundarySource& source, const TileLayout& layout, int halo)
+    : ElementBins(
+          source.elementCount(), [&](std::size_t i) { return source.elementBounds(i); }, layout,
+          halo) {}
+
+ElementBins::ElementBins(std::size_t elementCount,
+                         const std::function<openvdb::BBoxd(std::size_t)>& boundsOf,
+                         const TileLayout& layout, int halo)
     : mZCount(layout.count.z()),
       mStart(static_cast<std::size_t>(layout.count.y()) * layout.count.z() + 1, 0) {
     const auto forEachColumn = [&](std::size_t element, const auto& visit) {
-        const openvdb::BBoxd bounds = source.elementBounds(element);
+        const openvdb::BBoxd bounds = boundsOf(element);
         const openvdb::Vec3d low = bounds.min() / layout.voxelSize;
         const openvdb::Vec3d high = bounds.max() / layout.voxelSize;
         const TileRange y = tilesTouching(layout, halo, 1, low.y(), high.y());
@@ -28,13 +35,13 @@ ElementBins::ElementBins(const BoundarySource& source, const TileLayout& layout,
         }
     };
     // Count, then place: a sort by column that keeps the elements' order.
-    for (std::size_t e = 0; e < source.elementCount(); ++e) {
+    for (std::size_t e = 0; e < elementCount; ++e) {
         forEachColumn(e, [&](std::size_t column) { ++mStart[column + 1]; });
     }
     for (std::size_t c = 1; c < mStart.size(); ++c) mStart[c] += mStart[c - 1];
     mElements.resize(mStart.back());
     std::vector<std::uint64_t> next(mStart.begin(), mStart.end() - 1);
-    for (std::size_t e = 0; e < source.elementCount(); ++e) {
+    for (std::size_t e = 0; e < elementCount; ++e) {
         forEachColumn(e, [&](std::size_t column) {
             mElements[next[column]++] = static_cast<std::uint32_t>(e);
         });

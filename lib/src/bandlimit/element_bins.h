@@ -5,6 +5,7 @@
 #include <bandvox/source/boundary_source.h>
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,11 @@ namespace bandvox {
 class ElementBins {
   public:
     ElementBins(const BoundarySource& source, const TileLayout& layout, int halo);
+
+    /// The same of so many elements, of which `boundsOf` gives a box each, world units.
+    ElementBins(std::size_t elementCount,
+                const std::function<openvdb::BBoxd(std::size_t)>& boundsOf,
+                const TileLayout& layout, int halo);
 
     /// Elements for the column of tiles at (y, z), in rising order.
     std::span<const std::uint32_t> column(int y, int z) const;

@@ -56,6 +56,43 @@ template <int kLanes>
     }
 }
 
+// So many floats in a row, added to others at once: of a loop over sixteen products the compiler
+// makes as many single ones.
+template <int kCount>
+struct FloatRow {
+    typedef float Type
+        __attribute__((vector_size(kCount * sizeof(float)), aligned(alignof(float)), may_alias));
+};
+
+// The two weights go into the rows, so that one row of products serves both sums.
+template <int kLanes>
+[[gnu::always_inline]] inline void spreadPairs(std::span<const PairedSample> samples, float offset,
+                                               const KernelPolynomials& kernel,
+                                               const SpreadLattice& lattice) {
+    alignas(64) float wx[kLanes], wy[kLanes], wz[kLanes];
+    using Row = typename FloatRow<2 * kLanes>::Type;
+    Row both{};
+    for (const PairedSample& sample : samples) {
+        const int x = axisWeights<kLanes>(kernel, sample.position.x() + offset, wx);
+        const int y = axisWeights<kLanes>(kernel, sample.position.y() + offset, wy);
+        const int z = axisWeights<kLanes>(kernel, sample.position.z() + offset, wz);
+        for (int k = 0; k < kLanes; ++k) {
+            both[2 * k] = sample.weights[0] * wz[k];
+            both[2 * k + 1] = sample.weights[1] * wz[k];
+        }
+        for (int i = 0; i < kernel.width; ++i) {
+            float* row =
+                lattice.nodes +
+                2 * ((static_cast<std::ptrdiff_t>(x + i) * lattice.yCount + y) * lattice.zStride +
+                     z);
+            for (int j = 0; j < kernel.width; ++j, row += 2 * lattice.zStride) {
+                const float line = wx[i] * wy[j];
+                *reinterpret_cast<Row*>(row) += line * both;
+            }
+        }
+    }
+}
+
 BANDVOX_FOR_EACH_INSTRUCTION_SET
 void spreadNarrow(std::span<const SurfaceSample> samples, float offset,
                   const KernelPolynomials& kernel, const SpreadLattice& lattice) {
@@ -68,17 +105,34 @@ void spreadWide(std::span<const SurfaceSample> samples, float offset,
     spread<16>(samples, offset, kernel, lattice);
 }
 
+BANDVOX_FOR_EACH_INSTRUCTION_SET
+void spreadNarrowPairs(std::span<const PairedSample> samples, float offset,
+                       const KernelPolynomials& kernel, const SpreadLattice& lattice) {
+    spreadPairs<8>(samples, offset, kernel, lattice);
+}
+
+BANDVOX_FOR_EACH_INSTRUCTION_SET
+void spreadWidePairs(std::span<const PairedSample> samples, float offset,
+                     const KernelPolynomials& kernel, const SpreadLattice& lattice) {
+    spreadPairs<16>(samples, offset, kernel, lattice);
+}
+
+KernelPolynomials polynomialsOf(const SpreadingKernel& kernel) {
+    return {kernel.polynomials().data(), kernel.polynomialDegree(), kernel.width()};
+}
+
 }  // namespace
 
 void spreadSamples(std::span<const SurfaceSample> samples, float offset,
                    const SpreadingKernel& kernel, const SpreadLattice& lattice) {
-    const KernelPolynomials polynomials{kernel.polynomials().data(), kernel.polynomialDegree(),
-                                        kernel.width()};
-    if (kernel.paddedWidth() == 8) {
-        spreadNarrow(samples, offset, polynomials, lattice);
-    } else {
-        spreadWide(samples, offset, polynomials, lattice);
-    }
+    const auto spreadAll = kernel.paddedWidth() == 8 ? spreadNarrow : spreadWide;
+    spreadAll(samples, offset, polynomialsOf(kernel), lattice);
+}
+
+void spreadSamples(std::span<const PairedSample> samples, float offset,
+                   const SpreadingKernel& kernel, const SpreadLattice& lattice) {
+    const auto spreadAll = kernel.paddedWidth() == 8 ? spreadNarrowPairs : spreadWidePairs;
+    spreadAll(samples, offset, polynomialsOf(kernel), lattice);
 }
 
 }  // namespace bandvox

@@ -20,4 +20,15 @@ struct SpreadLattice {
 void spreadSamples(std::span<const SurfaceSample> samples, float offset,
                    const SpreadingKernel& kernel, const SpreadLattice& lattice);
 
+/// A place with two weights that are to be spread.
+struct PairedSample {
+    openvdb::Vec3f position;  ///< voxels, from the origin of the region it was asked for
+    float weights[2];
+};
+
+/// The same for two sums at once, with these weights for -n_x dA: nodes are pairs, the first of
+/// them at 2·((x·yCount + y)·zStride + z). Each of them is as if it were alone.
+void spreadSamples(std::span<const PairedSample> samples, float offset,
+                   const SpreadingKernel& kernel, const SpreadLattice& lattice);
+
 }  // namespace bandvox

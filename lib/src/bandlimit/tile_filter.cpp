@@ -1,7 +1,5 @@
 #include "bandlimit/tile_filter.h"
 
-#include "bandlimit/spread_samples.h"
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -17,7 +15,7 @@ constexpr std::size_t kSamplesTogether = 2048;
 
 }  // namespace
 
-TileFilter::TileFilter(const TilePlan& plan)
+TileFilter::TileFilter(const TilePlan& plan, Output output)
     : mPlan(plan),
       mShift((plan.kernel.width() + 1) / 2),
       mMargin(mShift + (plan.kernel.width() + 1) / 2 + 1),
@@ -32,7 +30,8 @@ TileFilter::TileFilter(const TilePlan& plan)
     for (int i = 0; i < side; ++i) {
         const double k = static_cast<double>(i <= half ? i : i - side) / side;
         const std::complex<double> turn(0, 2 * std::numbers::pi * k);
-        const std::complex<double> d = i == 0 ? 1.0 : (1.0 - std::exp(-turn)) / turn;
+        const bool isOne = i == 0 || output == Output::Values;
+        const std::complex<double> d = isOne ? 1.0 : (1.0 - std::exp(-turn)) / turn;
         mDifference[2 * i] = static_cast<float>(d.real());
         mDifference[2 * i + 1] = static_cast<float>(d.imag());
     }
@@ -80,10 +79,23 @@ void TileFilter::spread(std::span<const SurfaceSample> samples, float* buffer) c
     }
 }
 
+void TileFilter::spread(std::span<const PairedSample> samples, float* scratch,
+                        const std::array<float*, 2>& buffers) const {
+    const auto offset = static_cast<float>(mShift);
+    const std::size_t together = samples.size() <= kFewSamples ? samples.size() : kSamplesTogether;
+    while (!samples.empty()) {
+        const auto some = samples.first(std::min(samples.size(), together));
+        samples = samples.subspan(some.size());
+        spreadSamples(some, offset, mPlan.kernel, {scratch, mFft.yCount(), mFft.zStride()});
+        movePairs(nodesUnder(some), scratch, buffers);
+    }
+}
+
 // The nodes that samples may have been spread to.
-openvdb::CoordBBox TileFilter::nodesUnder(std::span<const SurfaceSample> samples) const {
+template <typename Sample>
+openvdb::CoordBBox TileFilter::nodesUnder(std::span<const Sample> samples) const {
     openvdb::math::BBox<openvdb::Vec3f> box;
-    for (const SurfaceSample& sample : samples) box.expand(sample.position);
+    for (const Sample& sample : samples) box.expand(sample.position);
     const int reach = mPlan.kernel.paddedWidth() + 1;
     const openvdb::Coord count(mFft.xCount(), mFft.yCount(), mFft.zStride());
     openvdb::CoordBBox nodes;
@@ -105,6 +117,25 @@ void TileFilter::moveNodes(const openvdb::CoordBBox& nodes, float* part, float* 
                 nodes.min().z();
             for (int z = 0; z < length; ++z) buffer[row + z] += part[row + z];
             std::fill_n(part + row, length, 0.0F);
+        }
+    }
+}
+
+// The same for pairs, each of the two to its own buffer.
+void TileFilter::movePairs(const openvdb::CoordBBox& nodes, float* part,
+                           const std::array<float*, 2>& buffers) const {
+    const int length = nodes.dim().z();
+    for (int x = nodes.min().x(); x <= nodes.max().x(); ++x) {
+        for (int y = nodes.min().y(); y <= nodes.max().y(); ++y) {
+            const std::size_t row =
+                (static_cast<std::size_t>(x) * mFft.yCount() + y) * mFft.zStride() +
+                nodes.min().z();
+            float* pairs = part + 2 * row;
+            for (int z = 0; z < length; ++z) {
+                buffers[0][row + z] += pairs[2 * z];
+                buffers[1][row + z] += pairs[2 * z + 1];
+            }
+            std::fill_n(pairs, 2 * length, 0.0F);
         }
     }
 }

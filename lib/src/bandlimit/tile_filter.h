@@ -1,21 +1,24 @@
 #pragma once
 
+#include "bandlimit/spread_samples.h"
 #include "bandlimit/tile_plan.h"
 #include "spectral/fft.h"
 
-#include <bandvox/source/boundary_source.h>
-
+#include <array>
 #include <span>
 #include <vector>
 
 namespace bandvox {
 
-/// Filters one tile at a time: surface samples in, differences of the density along x out.
+/// Filters one tile at a time: weighted samples in, and out either h * (Σ_j w_j δ(x - y_j)), or
+/// what that is the derivative of: differences along x of the density, if they weigh -n_x dA.
 ///
 /// Immutable once built, and shared by all threads; each thread has a buffer of its own.
 class TileFilter {
   public:
-    explicit TileFilter(const TilePlan& plan);
+    enum class Output { Differences, Values };
+
+    explicit TileFilter(const TilePlan& plan, Output output = Output::Differences);
 
     /// A buffer for one thread's work, all zero.
     FftBuffer allocate() const { return mFft.allocate(); }
@@ -29,11 +32,16 @@ class TileFilter {
     /// be all zero.
     void spread(std::span<const SurfaceSample> samples, float* buffer) const;
 
-    /// Turns what was spread into f~(x, y, z) - f~(x - 1, y, z). Elsewhere than in the interior,
-    /// what is left in the buffer has no meaning.
+    /// The same for two weights, each onto a buffer of its own. `scratch` has twice a buffer's
+    /// size; it must be all zero, and is again.
+    void spread(std::span<const PairedSample> samples, float* scratch,
+                const std::array<float*, 2>& buffers) const;
+
+    /// Turns what was spread into the values, or into f~(x, y, z) - f~(x - 1, y, z). Elsewhere than
+    /// in the interior, what is left in the buffer has no meaning.
     void apply(float* buffer) const;
 
-    /// The differences along z at (x, y, 0) of the interior.
+    /// What comes out, along z at (x, y, 0) of the interior.
     const float* row(const float* buffer, int x, int y) const {
         return buffer +
                (static_cast<std::size_t>(x + mFirst + 1) * mFft.yCount() + y + mFirst) *
@@ -42,8 +50,11 @@ class TileFilter {
     }
 
   private:
-    openvdb::CoordBBox nodesUnder(std::span<const SurfaceSample> samples) const;
+    template <typename Sample>
+    openvdb::CoordBBox nodesUnder(std::span<const Sample> samples) const;
     void moveNodes(const openvdb::CoordBBox& nodes, float* part, float* buffer) const;
+    void movePairs(const openvdb::CoordBBox& nodes, float* part,
+                   const std::array<float*, 2>& buffers) const;
     void fold(float* buffer) const;
     void multiply(float* buffer) const;
 
@@ -52,7 +63,8 @@ class TileFilter {
     int mMargin;  // nodes behind it, for the shift and its right half
     int mFirst;   // where the interior begins in y and z
     const RealFft3& mFft;
-    std::vector<float> mDifference;  // [side][2]: (1 - e^{-2πik}) / (2πik) along x, complex
+    // [side][2], complex: (1 - e^{-2πik}) / (2πik) along x for differences, else 1
+    std::vector<float> mDifference;
     std::vector<float> mTransfer;  // [side/2 + 1]³: H(|k|) / (ψ̂ ψ̂ ψ̂) / side³, Nyquist 0
 };
 

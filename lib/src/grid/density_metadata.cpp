@@ -43,9 +43,13 @@ void setDensityMetadata(openvdb::GridBase& grid, const DensityMetadata& metadata
                  [&grid](const char* name, const auto& value) { setMember(grid, name, value); });
 }
 
-void setVoxelMetadata(openvdb::GridBase& grid, const std::string& source) {
+void setSourceMetadata(openvdb::GridBase& grid, const std::string& source) {
     setMember(grid, "version", std::string(version()));
     setMember(grid, "source", source);
+}
+
+void setVoxelMetadata(openvdb::GridBase& grid, const std::string& source) {
+    setSourceMetadata(grid, source);
     setMember(grid, "iso", 0.5);
 }
 

@@ -40,12 +40,18 @@ class RegionClip {
                lower[1] > mCullUpper[1] || upper[2] < mCullLower[2] || lower[2] > mCullUpper[2];
     }
 
-    /// Appends the sample if its position lies in the region, far faces excluded.
+    /// True if the position lies in the region, far faces excluded.
+    bool holds(const openvdb::Vec3d& position) const {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!(position[axis] >= mLower[axis] && position[axis] < mUpper[axis])) return false;
+        }
+        return true;
+    }
+
+    /// Appends the sample if the region holds its position.
     void append(const openvdb::Vec3d& position, const openvdb::Vec3d& areaVector,
                 std::vector<SurfaceSample>& samples) const {
-        for (int axis = 0; axis < 3; ++axis) {
-            if (!(position[axis] >= mLower[axis] && position[axis] < mUpper[axis])) return;
-        }
+        if (!holds(position)) return;
         samples.push_back({openvdb::Vec3f(position - mLower), openvdb::Vec3f(areaVector)});
     }
 

@@ -43,11 +43,15 @@ void setDensityMetadata(openvdb::GridBase& grid, const DensityMetadata& metadata
 /// then it is no band-limited density of this library.
 std::optional<DensityMetadata> densityMetadata(const openvdb::GridBase& grid);
 
+/// Stores in a grid what made it and from what: bandvox_version and bandvox_source.
+void setSourceMetadata(openvdb::GridBase& grid, const std::string& source);
+
 /// Stores in a grid of binary voxels what it can say of itself: bandvox_version, bandvox_source,
 /// and bandvox_iso = 0.5. For densityMetadata it stays a grid of unknown origin.
 void setVoxelMetadata(openvdb::GridBase& grid, const std::string& source);
 
-/// What a grid of this library, of densities or of binary voxels, was made from; empty of others.
+/// What a grid of this library, of densities, colours or binary voxels, was made from; empty of
+/// others.
 std::string sourceOf(const openvdb::GridBase& grid);
 
 /// Integral of the density: the sum of all active values times a voxel's volume, world units³.
