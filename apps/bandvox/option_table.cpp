@@ -26,7 +26,8 @@ void appendWrapped(std::string& out, std::string_view text, std::size_t indent) 
         for (std::string word; words >> word;) {
             const std::size_t space = lineStart ? 0 : 1;
             if (!lineStart && column + space + word.size() > kTextWidth) {
-                out += '\n' + std::string(indent, ' ');
+                out += '\n';
+                out.append(indent, ' ');
                 column = indent;
                 lineStart = true;
             }
@@ -39,7 +40,8 @@ void appendWrapped(std::string& out, std::string_view text, std::size_t indent) 
             lineStart = false;
         }
         if (!lines.eof()) {
-            out += '\n' + std::string(indent, ' ');
+            out += '\n';
+            out.append(indent, ' ');
             column = indent;
             lineStart = true;
         }
@@ -58,7 +60,8 @@ std::string optionHead(const OptionEntry& option) {
 void appendEntry(std::string& out, const std::string& head, const std::string& help) {
     out += head;
     if (head.size() + 2 > kHelpColumn) {
-        out += '\n' + std::string(kHelpColumn, ' ');
+        out += '\n';
+        out.append(kHelpColumn, ' ');
     } else {
         out += std::string(kHelpColumn - head.size(), ' ');
     }

@@ -134,6 +134,21 @@ class OpenImageIo final : public ImageLibrary {
         return read(name, &memory);
     }
 
+    CodedPixels readCoded(const std::filesystem::path& path,
+                          const PixelGuard& guard) const override {
+        const OIIO::ImageSpec config = unmultiplied();
+        return readCoded(OIIO::ImageInput::open(path.string(), &config).get(), guard);
+    }
+
+    CodedPixels readCoded(std::span<const std::byte> bytes, const std::string& name,
+                          const PixelGuard& guard) const override {
+        OIIO::ImageSpec config = unmultiplied();
+        OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
+        OIIO::Filesystem::IOProxy* proxy = &reader;
+        config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+        return readCoded(OIIO::ImageInput::open(name, &config).get(), guard);
+    }
+
     WriteFailure writePng(std::ostream& stream, const PngRows& image) const override {
         StreamProxy proxy(stream);
         const std::string failure = encode(image, proxy);
@@ -141,6 +156,37 @@ class OpenImageIo final : public ImageLibrary {
     }
 
   private:
+    // Colours that are multiplied with alpha would be darker than they are.
+    static OIIO::ImageSpec unmultiplied() {
+        OIIO::ImageSpec config;
+        config.attribute("oiio:UnassociatedAlpha", 1);
+        return config;
+    }
+
+    static CodedPixels readCoded(OIIO::ImageInput* input, const PixelGuard& guard) {
+        if (!input) throw Error(ErrorKind::Input, "cannot be read: " + OIIO::geterror());
+        const OIIO::ImageSpec& spec = input->spec();
+        if (spec.depth > 1 || spec.deep || spec.nchannels < 1 || spec.width < 1 ||
+            spec.height < 1) {
+            throw Error(ErrorKind::Input,
+                        "has " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
+                            " x " + std::to_string(spec.depth) + " texels of " +
+                            std::to_string(spec.nchannels) + " channels; expected a flat picture");
+        }
+        guard(spec.width, spec.height, 2.0 * static_cast<double>(spec.image_bytes(true)));
+        CodedPixels pixels{spec.width,
+                           spec.height,
+                           spec.nchannels >= 3 ? 3 : 1,
+                           spec.format.is_floating_point(),
+                           {}};
+        pixels.values.resize(static_cast<std::size_t>(spec.width) * spec.height * pixels.channels);
+        if (!input->read_image(0, 0, 0, pixels.channels, OIIO::TypeDesc::UINT16,
+                               pixels.values.data())) {
+            throw Error(ErrorKind::Input, "cannot be read: " + input->geterror());
+        }
+        return pixels;
+    }
+
     [[noreturn]] static void fail(const std::string& name, const std::string& why) {
         throw Error(ErrorKind::Input, name + ": " + why);
     }

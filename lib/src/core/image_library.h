@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
@@ -17,6 +18,18 @@ struct PixelArray {
     int channels = 0;           ///< R, G, B, A in that order, as far as they are there
     std::vector<float> values;  ///< [height][width][channels], rows from the top
 };
+
+/// Pixels as they are coded, 65535 being the largest value.
+struct CodedPixels {
+    int width = 0, height = 0;
+    int channels = 0;                   ///< 1, grey, or 3; alpha is left out, and not multiplied in
+    bool isLinear = false;              ///< else sRGB
+    std::vector<std::uint16_t> values;  ///< [height][width][channels], rows from the top
+};
+
+/// Is asked before the pixels are read, with width, height and the bytes that reading takes; may
+/// throw.
+using PixelGuard = std::function<void(int width, int height, double bytes)>;
 
 /// A picture for a .png file.
 struct PngRows {
@@ -46,6 +59,12 @@ class ImageLibrary {
     /// The same from what such a file holds; errors call it `name`, whose extension says what it
     /// is if the bytes do not.
     virtual PixelArray read(std::span<const std::byte> bytes, const std::string& name) const = 0;
+
+    /// The same as it is coded. Throws Error(ErrorKind::Input), which does not name the file.
+    virtual CodedPixels readCoded(const std::filesystem::path& path,
+                                  const PixelGuard& guard) const = 0;
+    virtual CodedPixels readCoded(std::span<const std::byte> bytes, const std::string& name,
+                                  const PixelGuard& guard) const = 0;
 
     /// Writes 8-bit sRGB with alpha.
     virtual WriteFailure writePng(std::ostream& stream, const PngRows& image) const = 0;

@@ -1,12 +1,10 @@
 #include "source/read_texture.h"
 
+#include "core/image_library.h"
 #include "source/srgb.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>
-
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 
 #include <cmath>
 #include <cstring>
@@ -47,42 +45,24 @@ void repeatGrey(std::vector<std::uint16_t>& values) {
     throw Error(ErrorKind::Input, why);
 }
 
-/// Colours that are multiplied with alpha would be darker than they are.
-OIIO::ImageSpec unmultiplied() {
-    OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1);
-    return config;
+void requireSize(int width, int height, double bytes) {
+    if (width > kLargestTexture || height > kLargestTexture) {
+        failPicture("has " + std::to_string(width) + " x " + std::to_string(height) +
+                    " texels; expected up to " + std::to_string(kLargestTexture) +
+                    " along each side");
+    }
+    requireMemory(
+        Texture::memory(width, height) + bytes,
+        ("a texture of " + std::to_string(width) + " x " + std::to_string(height) + " texels")
+            .c_str());
 }
 
-std::shared_ptr<const Texture> readPicture(OIIO::ImageInput* input) {
-    if (input == nullptr) failPicture("cannot be read: " + OIIO::geterror());
-    const OIIO::ImageSpec& spec = input->spec();
-    const bool isFlat = spec.depth <= 1 && !spec.deep && spec.nchannels >= 1;
-    if (!isFlat || spec.width < 1 || spec.height < 1 || spec.width > kLargestTexture ||
-        spec.height > kLargestTexture) {
-        failPicture("has " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-                    " x " + std::to_string(spec.depth) + " texels of " +
-                    std::to_string(spec.nchannels) +
-                    " channels; expected a flat picture of up to " +
-                    std::to_string(kLargestTexture) + " along each side");
+std::shared_ptr<const Texture> makeTexture(CodedPixels picture) {
+    if (picture.channels == 1) repeatGrey(picture.values);
+    if (!picture.isLinear) {
+        for (std::uint16_t& value : picture.values) value = linearTable()[value];
     }
-    requireMemory(Texture::memory(spec.width, spec.height) + 2.0 * spec.image_bytes(true),
-                  ("a texture of " + std::to_string(spec.width) + " x " +
-                   std::to_string(spec.height) + " texels")
-                      .c_str());
-    const bool isLinear = spec.format.is_floating_point();
-    const int channels = spec.nchannels >= 3 ? 3 : 1;
-    const int width = spec.width;
-    const int height = spec.height;
-    std::vector<std::uint16_t> rgb(static_cast<std::size_t>(width) * height * channels);
-    if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT16, rgb.data())) {
-        failPicture("cannot be read: " + input->geterror());
-    }
-    if (channels == 1) repeatGrey(rgb);
-    if (!isLinear) {
-        for (std::uint16_t& value : rgb) value = linearTable()[value];
-    }
-    return std::make_shared<Texture>(width, height, std::move(rgb));
+    return std::make_shared<Texture>(picture.width, picture.height, std::move(picture.values));
 }
 
 /// The kind that a file is by its first bytes, or `said`, which is often wrong or empty.
@@ -102,17 +82,13 @@ std::shared_ptr<const Texture> readTexture(const std::filesystem::path& path) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) failPicture("does not exist");
     if (!std::filesystem::is_regular_file(path, ignored)) failPicture("is not a regular file");
-    const OIIO::ImageSpec config = unmultiplied();
-    return readPicture(OIIO::ImageInput::open(path.string(), &config).get());
+    return makeTexture(imageLibrary().readCoded(path, requireSize));
 }
 
 std::shared_ptr<const Texture> readTexture(std::span<const std::byte> bytes,
                                            const std::string& kind) {
-    OIIO::ImageSpec config = unmultiplied();
-    OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
-    OIIO::Filesystem::IOProxy* proxy = &reader;
-    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    return readPicture(OIIO::ImageInput::open("texture." + kindOf(bytes, kind), &config).get());
+    return makeTexture(
+        imageLibrary().readCoded(bytes, "texture." + kindOf(bytes, kind), requireSize));
 }
 
 }  // namespace bandvox
