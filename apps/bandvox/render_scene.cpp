@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <map>
+#include <numbers>
 #include <utility>
 
 namespace bandvox::app {
@@ -23,9 +24,9 @@ const Range kLength{.low = 0, .high = 1e30};
 
 // Settings of an object, on the command line for each of several between slashes.
 const std::vector<std::string> kObjectNames{
-    "grid",        "mode",         "iso",        "color",       "roughness",
-    "reflectance", "transparency", "refraction", "tint-length", "colors",
-    "extinction",  "anisotropy",   "emission",   "temperature", "glow"};
+    "grid",        "mode",         "iso",        "color",       "colors",     "roughness",
+    "reflectance", "transparency", "refraction", "tint-length", "extinction", "anisotropy",
+    "emission",    "temperature",  "glow",       "scale",       "rotate",     "translate"};
 
 ObjectRequest readObject(const OptionValues& values, const std::string& file) {
     ObjectRequest request;
@@ -33,6 +34,9 @@ ObjectRequest readObject(const OptionValues& values, const std::string& file) {
     request.grid = values.text("grid");
     request.colors = values.text("colors");
     request.temperatures = values.text("temperature");
+    request.scale = values.number("scale", {.low = 0, .high = 1e30, .lowOpen = true}, 1);
+    request.rotate = values.vector("rotate", kAnyPlace).value_or(request.rotate);
+    request.translate = values.vector("translate", kAnyPlace).value_or(request.translate);
     SceneObject& object = request.object;
     object.kind = static_cast<SceneObject::Kind>(values.choice("mode", {"surface", "volume"}, 0));
     if (values.has("iso")) object.iso = values.number("iso", {}, 0);
@@ -173,6 +177,20 @@ void readSceneFile(const CommandLine& line, const std::string& path,
 // What a file of a scene holds, read once.
 using OpenFiles = std::map<std::string, openvdb::GridPtrVec>;
 
+// The same grid elsewhere; its voxels are shared.
+template <typename Grid>
+void place(std::shared_ptr<const Grid>& grid, const ObjectRequest& request) {
+    if (!grid) return;
+    const auto transform = grid->transform().copy();
+    transform->postScale(request.scale);
+    for (int axis = 0; axis < 3; ++axis) {
+        transform->postRotate(request.rotate[axis] * std::numbers::pi / 180,
+                              openvdb::math::Axis(axis));
+    }
+    transform->postTranslate(request.translate);
+    grid = grid->copyReplacingTransform(transform);
+}
+
 void loadGrids(CommandRun& run, const ObjectRequest& request, const std::string& file,
                OpenFiles& files, SceneObject& object) {
     if (!files.contains(file)) {
@@ -188,6 +206,13 @@ void loadGrids(CommandRun& run, const ObjectRequest& request, const std::string&
     }
     if (isVolume && request.temperatures != "none") {
         object.temperatures = findFloatGrid(grids, request.temperatures, "temperature", file);
+    }
+    const bool stays = request.scale == 1 && request.rotate == openvdb::Vec3d(0.0) &&
+                       request.translate == openvdb::Vec3d(0.0);
+    if (!stays) {
+        place(object.grid, request);
+        place(object.colors, request);
+        place(object.temperatures, request);
     }
     run.say("read     " + file + ": grid '" + object.grid->getName() + "', " +
             formatCount(static_cast<std::int64_t>(object.grid->activeVoxelCount()), "active voxel",
@@ -271,6 +296,9 @@ std::vector<OptionEntry> sceneEntries() {
         {"temperature", 0, "NAME", "temperature, if there is one",
          "Grid of temperatures, kelvin, at which a volume glows; none for none.", object},
         {"glow", 0, "S", formatNumber(medium.glow), "How bright it does at 2000 K.", object},
+        {"scale", 0, "S", "1", "Makes the object larger, about the world's origin.", object},
+        {"rotate", 0, "X,Y,Z", "0,0,0", "Then turns it about x, y and z, degrees.", object},
+        {"translate", 0, "X,Y,Z", "0,0,0", "Then moves it, world units.", object},
         {"light", 0, "X,Y,Z", vector(standard.light),
          "Direction to the lamp, along the camera's right, up and back.", light},
         {"light-at", 0, "X,Y,Z", "", "Place of a lamp, world, instead.", light},

@@ -230,6 +230,23 @@ TEST_F(RenderScene, GridsOfOneNameAreToldApart) {
     EXPECT_EQ(render(with({"doubles.vdb", "-o", "x.png"}, kFront)).status, 0);
 }
 
+TEST_F(RenderScene, ObjectsAreMoved) {
+    const Names view = with(kFront, {"--frame", "8", "--eye", "0,0,9", "--lookat", "0,0,0"});
+    ASSERT_EQ(render(with({"sphere.vdb", "cube.vdb", "-o", "moved.exr", "--scale", "0.5/1",
+                           "--translate", "-2,0,1/2,1,0", "--rotate", "0,0,0/0,0,45"},
+                          view))
+                  .status,
+              0);
+    const Picture picture = read("moved.exr");
+    // Four pixels to a unit. The ball's top is half a unit above (-2, 0, 1).
+    EXPECT_NEAR(picture.at(8, 16)[4], 7.5, 0.05);
+    EXPECT_TRUE(std::isinf(picture.at(8, 12)[4]));
+    // The cube stands on an edge: wider in its middle than it is long.
+    EXPECT_NEAR(picture.at(24, 12)[4], 8, 0.05);
+    EXPECT_FALSE(std::isinf(picture.at(19, 11)[4]));
+    EXPECT_TRUE(std::isinf(picture.at(20, 8)[4]));
+}
+
 TEST_F(RenderScene, ACropIsAPartOfThePicture) {
     ASSERT_EQ(render({"cube.vdb", "-o", "all.exr", "--res", "40x30", "--samples", "3"}).status, 0);
     ASSERT_EQ(render({"cube.vdb", "-o", "part.exr", "--res", "40x30", "--samples", "3", "--crop",

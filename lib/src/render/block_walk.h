@@ -11,17 +11,15 @@
 #include <limits>
 #include <optional>
 
-// Trees that have one voxel for each block of 8³ voxels of a lattice.
+// Trees that have one voxel for each block of 2^n × 2^n × 2^n voxels of a lattice.
 namespace bandvox {
-
-constexpr int kBlockLog2 = 3;
-constexpr int kBlockSide = 1 << kBlockLog2;
 
 using BlockRay = openvdb::math::Ray<double>;
 
-/// A ray of a lattice, from t = 0 to `end`, in blocks.
-inline BlockRay inBlocks(const Ray& ray, double end = std::numeric_limits<double>::max()) {
-    return BlockRay(ray.origin / kBlockSide, ray.direction / kBlockSide, 0.0, end);
+/// A ray of a lattice, from t = 0 to `end`, in blocks of `side` voxels.
+inline BlockRay inBlocks(const Ray& ray, int side,
+                         double end = std::numeric_limits<double>::max()) {
+    return BlockRay(ray.origin / side, ray.direction / side, 0.0, end);
 }
 
 /// The box of the active blocks of a tree, ends included, in blocks. Trees count whole nodes in; so
@@ -33,12 +31,10 @@ openvdb::BBoxd boxOfBlocks(const BlockTree& blocks) {
     return {box.min().asVec3d(), box.max().offsetBy(1).asVec3d()};
 }
 
-/// Calls `visit(t0, t1, value)` for each active block on the way of origin + t·direction,
-/// 0 ≤ t ≤ `end`, in order; stops when it returns true. `box` holds all blocks.
+/// Calls `visit(t0, t1, value)` for each active block on the way of a ray, in order; stops when it returns true. `box` holds all blocks.
 template <typename BlockTree, typename Visitor>
-void walkBlocks(const BlockTree& blocks, const openvdb::BBoxd& box, const Ray& ray, double end,
+void walkBlocks(const BlockTree& blocks, const openvdb::BBoxd& box, BlockRay blockRay,
                 const Visitor& visit) {
-    BlockRay blockRay = inBlocks(ray, end);
     if (blocks.empty() || !blockRay.clip(box)) return;
 
     // Step over the tree's leaves, and inside each over its blocks.

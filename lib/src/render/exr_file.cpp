@@ -108,6 +108,8 @@ Imf::Header makeHeader(const Image& image) {
                : Imath::Box2i(corner, corner + size);
     Imf::Header header(display, Imath::Box2i(corner, corner + size), 1, {0, 0}, 1,
                        Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+    // Most of what can be saved is saved by the quickest way.
+    header.zipCompressionLevel() = 1;
     for (const char* name : kColorChannels) header.channels().insert(name, Imf::Channel(Imf::HALF));
     for (const DataChannel& channel : dataChannels(image)) {
         header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));

@@ -3,6 +3,7 @@
 #include "render/examine_leaves.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -14,11 +15,13 @@ namespace {
 using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
 
-// The surface may lie this many voxels beyond the outermost high value of the lattice.
-constexpr int kSurfaceMargin = 2;
+// The surface may lie this many voxels beyond the outermost high value of the lattice: where it
+// is, one of the nodes around is high.
+constexpr int kSurfaceMargin = 1;
 
 struct HighLeaf {
-    openvdb::CoordBBox high;  // voxels at or above the threshold; empty if there are none
+    // Of each eighth of the leaf the voxels at or above the threshold; empty if there are none.
+    std::array<openvdb::CoordBBox, 8> high;
     float maximum;
     bool finite = true;
 };
@@ -29,12 +32,15 @@ bool isFinite(float value) {
 }
 
 HighLeaf findHigh(const Leaf& leaf, float threshold) {
-    HighLeaf found{openvdb::CoordBBox(), std::numeric_limits<float>::lowest()};
+    HighLeaf found{{}, std::numeric_limits<float>::lowest()};
     const float* values = leaf.buffer().data();
     for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
         found.maximum = std::max(found.maximum, values[i]);
         found.finite = found.finite && isFinite(values[i]);
-        if (values[i] >= threshold) found.high.expand(leaf.offsetToGlobalCoord(i));
+        if (!(values[i] >= threshold)) continue;
+        // Offsets are x, y, z, three bits each.
+        const openvdb::Index eighth = (i >> 6 & 4) | (i >> 4 & 2) | (i >> 2 & 1);
+        found.high[eighth].expand(leaf.offsetToGlobalCoord(i));
     }
     return found;
 }
@@ -52,7 +58,9 @@ SurfaceBlocks::SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold)
     for (const HighLeaf& leaf : found) {
         mMaximum = std::max<double>(mMaximum, leaf.maximum);
         mFinite = mFinite && leaf.finite;
-        if (!leaf.high.empty()) mark(leaf.high);
+        for (const openvdb::CoordBBox& high : leaf.high) {
+            if (!high.empty()) mark(high);
+        }
     }
 
     // Mark the tiles.
@@ -71,13 +79,13 @@ SurfaceBlocks::SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold)
 void SurfaceBlocks::mark(const openvdb::CoordBBox& voxels) {
     openvdb::CoordBBox blocks(voxels.min().offsetBy(-kSurfaceMargin),
                               voxels.max().offsetBy(kSurfaceMargin));
-    blocks.min() >>= kBlockLog2;
-    blocks.max() >>= kBlockLog2;
+    blocks.min() >>= kLog2;
+    blocks.max() >>= kLog2;
     mBlocks.sparseFill(blocks, true, true);
 }
 
 std::optional<double> SurfaceBlocks::entry(const Ray& ray) const {
-    BlockRay blockRay = inBlocks(ray);
+    BlockRay blockRay = inBlocks(ray, kSide);
     if (mBlocks.empty() || !blockRay.clip(mBox)) return std::nullopt;
     return blockRay.t0();
 }

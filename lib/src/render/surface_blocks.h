@@ -10,12 +10,12 @@
 
 namespace bandvox {
 
-/// Where along a line of sight the surface {density = iso} can be: the blocks of 8³ voxels near
+/// Where along a line of sight the surface {density = iso} can be: the blocks of 4³ voxels near
 /// lattice values that are high enough. All lengths in voxels, index coordinates.
 class SurfaceBlocks {
   public:
-    /// Marks the blocks within two voxels of a value ≥ `threshold`, which must be above the
-    /// grid's background.
+    /// Marks the blocks within a voxel of a value ≥ `threshold`, which must be above the grid's
+    /// background.
     SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold);
 
     bool empty() const { return mBlocks.empty(); }
@@ -39,6 +39,9 @@ class SurfaceBlocks {
     void forEachBlock(const Visitor& visit) const;
 
   private:
+    static constexpr int kLog2 = 2;
+    static constexpr int kSide = 1 << kLog2;  // voxels
+
     void mark(const openvdb::CoordBBox& voxels);
 
     openvdb::MaskTree mBlocks;  // one voxel for each block
@@ -49,7 +52,7 @@ class SurfaceBlocks {
 
 template <typename Visitor>
 void SurfaceBlocks::walk(const Ray& ray, double end, const Visitor& visit) const {
-    walkBlocks(mBlocks, mBox, ray, end,
+    walkBlocks(mBlocks, mBox, inBlocks(ray, kSide, end),
                [&](double t0, double t1, bool /*value*/) { return visit(t0, t1); });
 }
 
@@ -57,8 +60,8 @@ template <typename Visitor>
 void SurfaceBlocks::forEachBlock(const Visitor& visit) const {
     for (auto block = mBlocks.cbeginValueOn(); block; ++block) {
         openvdb::CoordBBox box = block.getBoundingBox();
-        box.min() <<= kBlockLog2;
-        box.max() = (box.max().offsetBy(1) << kBlockLog2).offsetBy(-1);
+        box.min() <<= kLog2;
+        box.max() = (box.max().offsetBy(1) << kLog2).offsetBy(-1);
         visit(box);
     }
 }
