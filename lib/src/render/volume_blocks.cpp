@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace bandvox {
@@ -20,10 +21,12 @@ constexpr int kReach = 2;
 // Densities below this stop no light to speak of.
 constexpr float kNoDensity = 1e-4F;
 
-// How far above the nodes the density between them rises: hardly where it is band-limited; by a
-// quarter of a step at most under the cubic spline.
-constexpr double kBandLimitedRise = 1.05;
-constexpr double kSplineRise = 1.25;
+// Interpolation by cubic splines multiplies values by 1.549 at most along each axis; those from 0
+// to 1 reach half of 1 + 1.549³.
+constexpr double kSplineRise = 2.36;
+
+// What interpolation to a tolerance adds.
+constexpr double kRiseMargin = 1.01;
 
 constexpr float kLargest = 1e30F;
 
@@ -52,6 +55,24 @@ void forNeighbours(const openvdb::Coord& local, const Visitor& visit) {
     }
 }
 
+// How far above the nodes the density between them rises at most: as that of a point in the middle
+// between eight of them. For a Gaussian, g(x) / g(x - h) is what a sum of such points obeys as well,
+// as long as none is negative; for others it is what solids do not exceed.
+double riseAboveNodes(const std::optional<ExponentialFilter>& filter) {
+    if (!filter) return kSplineRise;
+    constexpr int kFrequencies = 512;
+    const double farthest = 0.5 * std::sqrt(3.0);
+    double there = 0, atNodes = 0;
+    for (int i = 0; i < kFrequencies; ++i) {
+        const double k = 0.5 * (i + 0.5) / kFrequencies;
+        const double turn = 2 * std::numbers::pi * k * farthest;
+        const double weight = (*filter)(k) * k * k;
+        there += weight;
+        atNodes += weight * std::sin(turn) / turn;
+    }
+    return kRiseMargin * there / atNodes;
+}
+
 LeafMaxima findMaxima(const Leaf& leaf) {
     LeafMaxima found;
     found.most.fill(0);
@@ -73,10 +94,17 @@ openvdb::Coord neighbourOf(const openvdb::Coord& block, int i) {
 
 }  // namespace
 
-VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid, bool isBandLimited) : mBlocks(0) {
-    const auto rise = static_cast<float>(isBandLimited ? kBandLimitedRise : kSplineRise);
+VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid,
+                           const std::optional<ExponentialFilter>& filter)
+    : mBlocks(0) {
+    const auto rise = static_cast<float>(riseAboveNodes(filter));
 
-    // Mark the tiles; the borders of each matter to the blocks around it.
+    // Mark the tiles first, then around each of them: its borders matter to tiles beside it too.
+    struct Tile {
+        openvdb::CoordBBox blocks;
+        float most;
+    };
+    std::vector<Tile> tiles;
     auto tile = grid.tree().cbeginValueAll();
     tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
@@ -87,10 +115,13 @@ VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid, bool isBandLimited) :
         blocks.min() >>= kBlockLog2;
         blocks.max() >>= kBlockLog2;
         mBlocks.sparseFill(blocks, rise * value, true);
+        tiles.push_back({blocks, rise * value});
+    }
+    for (const auto& [blocks, most] : tiles) {
         openvdb::CoordBBox around = blocks;
         around.expand(1);
         for (auto block = around.begin(); block; ++block) {
-            if (!blocks.isInside(*block)) raise(*block, rise * value);
+            if (!blocks.isInside(*block)) raise(*block, most);
         }
     }
 

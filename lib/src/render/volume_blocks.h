@@ -3,8 +3,11 @@
 #include "render/block_walk.h"
 
 #include <bandvox/render/camera.h>
+#include <bandvox/spectral/exponential_filter.h>
 
 #include <openvdb/openvdb.h>
+
+#include <optional>
 
 namespace bandvox {
 
@@ -12,9 +15,9 @@ namespace bandvox {
 /// of 8³ voxels. All lengths in voxels, index coordinates.
 class VolumeBlocks {
   public:
-    /// `isBandLimited`: the density between the nodes is little higher than at them. The background
-    /// of `grid` is 0.
-    VolumeBlocks(const openvdb::FloatGrid& grid, bool isBandLimited);
+    /// `filter`: what the lattice was filtered with; without, it is read by the cubic spline. The
+    /// background of `grid` is 0.
+    VolumeBlocks(const openvdb::FloatGrid& grid, const std::optional<ExponentialFilter>& filter);
 
     bool empty() const { return mBlocks.empty(); }
     /// False if a value of the lattice is not finite, or so large that sums of them are not.
