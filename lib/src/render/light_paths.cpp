@@ -69,8 +69,8 @@ PathLight LightPaths::look(const Ray& ray, std::span<const ScreenCells::Span> sp
 
 Vec3d LightPaths::follow(const Path& path, Thread& thread) const {
     if (path.depth > mTransport.depth || path.weight < kLeastWeight) return Vec3d(0.0);
-    const auto found = mScene.nearest(path.ray, kFar, path.inside, thread.probes);
-    const double end = found ? found->hit.t : kFar;
+    const auto found = mScene.nearest(path.ray, path.reach, path.inside, thread.probes);
+    const double end = found ? found->hit.t : path.reach;
     const MediumLight medium =
         mMedium.along(path.ray, end, path.inside, thread.numbers, thread.probes);
     Vec3d light = found ? meet(path, *found, thread) : escape(path);
@@ -173,8 +173,7 @@ Vec3d LightPaths::seenOfLamp(const LampSample& lamp, const Path& path, const Mee
 // Light from around on the matt ground, as far as nothing is in the way.
 Vec3d LightPaths::gathered(const Path& path, const Meeting& at, Thread& thread) const {
     const bool goesOn = path.bounces < mTransport.bounces;
-    const double end =
-        mTransport.gatherDistance > 0 && !goesOn ? mTransport.gatherDistance : kFar;
+    const double end = mTransport.gatherDistance > 0 ? mTransport.gatherDistance : kFar;
     // One direction is enough for each of the many that other surfaces look in.
     const int count = path.bounces == 0 ? mTransport.gather : 1;
     Vec3d sum(0.0);
@@ -188,6 +187,7 @@ Vec3d LightPaths::gathered(const Path& path, const Meeting& at, Thread& thread) 
             Path next{ray, path.inside};
             next.depth = path.depth;
             next.bounces = path.bounces + 1;
+            next.reach = end;
             next.weight = path.weight;
             next.isSharp = next.isStraight = false;
             light = follow(next, own);
@@ -211,6 +211,7 @@ LightPaths::Path LightPaths::mirror(const Path& path, const Meeting& at, const V
     next.ray = {at.place + beyond(at) * at.normal,
                 at.frame.toWorld(reflect(at.out, half)).unit()};
     next.depth = path.depth + 1;
+    next.reach = kFar;
     next.weight = path.weight * weight;
     next.isSharp = path.isSharp && at.object.facets().areEven();
     next.isStraight = false;
@@ -262,6 +263,7 @@ Vec3d LightPaths::glass(const Path& path, const Meeting& at, bool leaving, Threa
         next.ray = {at.place - beyond(at) * at.normal, at.frame.toWorld(through).unit()};
         next.inside = leaving ? path.inside.without(at.surface) : path.inside.with(at.surface);
         next.depth = path.depth + 1;
+        next.reach = kFar;
         next.weight = path.weight * (both ? weight : seen);
         next.isSharp = path.isSharp && facets.areEven();
         light += weight * follow(next, thread);

@@ -6,6 +6,7 @@
 
 #include <bandvox/render/picture_options.h>
 
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -35,6 +36,7 @@ class LightPaths {
         InsideOf inside;
         int depth = 0;       // how often it has been mirrored or refracted
         int bounces = 0;     // and sent on by matt surfaces
+        double reach = std::numeric_limits<double>::max();  // beyond, nothing is in its way
         double weight = 1;   // the largest part of its light that arrives
         bool isSharp = true;      // mirrored and refracted by even facets only
         bool isStraight = true;   // not mirrored: what it sees lies behind
