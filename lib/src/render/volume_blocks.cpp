@@ -14,9 +14,9 @@ namespace {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-// Values of the lattice act on places this many voxels beyond them, farther off only as ripples of
-// what is left near Nyquist.
-constexpr int kReach = 2;
+// Values of the lattice act on places this many voxels beyond them, farther off only as the ripples
+// of a spline, less than 0.004 of a step.
+constexpr int kReach = 3;
 
 // Densities below this stop no light to speak of.
 constexpr float kNoDensity = 1e-4F;
