@@ -31,7 +31,8 @@ std::vector<Vec3d> places(int count, double low, double high, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(low, high);
     std::vector<Vec3d> all;
-    for (int i = 0; i < count; ++i) all.emplace_back(uniform(random), uniform(random), uniform(random));
+    for (int i = 0; i < count; ++i)
+        all.emplace_back(uniform(random), uniform(random), uniform(random));
     return all;
 }
 

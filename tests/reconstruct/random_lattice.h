@@ -11,8 +11,8 @@
 
 namespace bandvox::reconstruct_test {
 
-/// A density of period kPeriod: random amplitudes for all frequencies that the lattice holds, times a
-/// filter; read by the direct sum of all of its waves, in double precision.
+/// A density of period kPeriod: random amplitudes for all frequencies that the lattice holds, times
+/// a filter; read by the direct sum of all of its waves, in double precision.
 class RandomLattice {
   public:
     static constexpr int kPeriod = 64;

@@ -68,9 +68,8 @@ TEST_P(EachSpectrum, IsReadByDefaultAsTheDirectSumOfItsWaves) {
 
 INSTANTIATE_TEST_SUITE_P(Spectra, EachSpectrum,
                          testing::Values(Case{{2, 0.16}, 0}, Case{{2, 0.16}, 0.5},
-                                         Case{{4, 0.2}, 0}, Case{{4, 0.2}, 0.5},
-                                         Case{{4, 0.25}, 0}, Case{{8, 0.35}, 0},
-                                         Case{{8, 0.35}, 0.5}));
+                                         Case{{4, 0.2}, 0}, Case{{4, 0.2}, 0.5}, Case{{4, 0.25}, 0},
+                                         Case{{8, 0.35}, 0}, Case{{8, 0.35}, 0.5}));
 
 }  // namespace
 }  // namespace bandvox

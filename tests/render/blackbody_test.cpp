@@ -19,13 +19,17 @@ openvdb::Vec2d chromaticity(const Vec3d& rgb) {
     return {x / (x + y + z), y / (x + y + z)};
 }
 
-TEST(Blackbody, IsOneAt2000Kelvin) { EXPECT_NEAR(luminance(blackbodyColor(2000)), 1, 1e-3); }
+TEST(Blackbody, IsOneAt2000Kelvin) {
+    EXPECT_NEAR(luminance(blackbodyColor(2000)), 1, 1e-3);
+}
 
 TEST(Blackbody, HasThePlanckianLocusColors) {
     // G. Wyszecki, W. Stiles: "Color Science" (1982); within what stands in for the eye.
     const struct {
         double kelvin, x, y;
-    } known[] = {{2500, 0.4770, 0.4137}, {4000, 0.3805, 0.3768}, {6500, 0.3135, 0.3237},
+    } known[] = {{2500, 0.4770, 0.4137},
+                 {4000, 0.3805, 0.3768},
+                 {6500, 0.3135, 0.3237},
                  {10000, 0.2807, 0.2884}};
     for (const auto& at : known) {
         const auto found = chromaticity(blackbodyColor(at.kelvin));

@@ -60,7 +60,8 @@ Vec3d overSphere(int steps, const std::function<Vec3d(const Vec3d&)>& f) {
 }
 
 Vec3d smoothLight(const Vec3d& d) {
-    return {1 + 0.5 * d[0] + 0.3 * d[1] * d[2], 0.4 + 0.3 * d[1], 1 + d[2] * d[2] - 0.2 * d[0] * d[1]};
+    return {1 + 0.5 * d[0] + 0.3 * d[1] * d[2], 0.4 + 0.3 * d[1],
+            1 + d[2] * d[2] - 0.2 * d[0] * d[1]};
 }
 
 TEST(EnvironmentMap, IsSeenWhereItsHeaderSays) {
@@ -144,7 +145,8 @@ TEST(EnvironmentMap, DrawsDirectionsByBrightness) {
         constexpr int kSide = 200;
         Vec3d sum(0.0), place(0.0);
         for (int i = 0; i < kSide * kSide; ++i) {
-            const auto sample = around.sample({(i / kSide + 0.5) / kSide, (i % kSide + 0.5) / kSide});
+            const auto sample =
+                around.sample({(i / kSide + 0.5) / kSide, (i % kSide + 0.5) / kSide});
             ASSERT_NEAR(sample.direction.length(), 1, 1e-9);
             ASSERT_GT(sample.density, 0);
             const Vec3d part = around.radiance(sample.direction) / sample.density;
@@ -195,8 +197,9 @@ TEST_F(EnvironmentFile, IsRead) {
     writeImage(path, image);
     const auto map = readEnvironmentMap(path);
     const double around = pi / 8;
-    EXPECT_LT((map->radiance(Vec3d(std::sin(around), 0, -std::cos(around))) - Vec3d(1, 3, 1)).length(),
-              1e-3);
+    EXPECT_LT(
+        (map->radiance(Vec3d(std::sin(around), 0, -std::cos(around))) - Vec3d(1, 3, 1)).length(),
+        1e-3);
     EXPECT_NEAR(map->radiance({0, 0, 1})[1], 1, 1e-6);
     EXPECT_NEAR(readEnvironmentMap(path, 180)->radiance({0, 0, -1})[1], 1, 1e-6);
 }

@@ -88,8 +88,8 @@ TEST(Facets, CoverWhatIsSeenFromAnywhere) {
 TEST(Facets, AreDrawnAsTheyAreSeen) {
     // Means of moments of drawn facets against their integrals.
     const auto moments = [](const Vec3d& h) {
-        return std::vector<double>{h[0], h[2], h[0] * h[0], h[1] * h[1], h[0] * h[2], h[1] * h[0],
-                                   h[2] * h[2] * h[2]};
+        return std::vector<double>{h[0],        h[2],        h[0] * h[0],       h[1] * h[1],
+                                   h[0] * h[2], h[1] * h[0], h[2] * h[2] * h[2]};
     };
     constexpr int kSide = 256;
     for (const double roughness : kRoughness) {
@@ -108,11 +108,10 @@ TEST(Facets, AreDrawnAsTheyAreSeen) {
             }
             const double alone = facets.seenFromBoth(cosine, 1);
             for (int m = 0; m < 7; ++m) {
-                const double expected =
-                    overHemisphere([&](const Vec3d& h) {
-                        const double seen = alone * std::max(h.dot(out), 0.0) / cosine;
-                        return seen * facets.density(h) * moments(h)[m];
-                    });
+                const double expected = overHemisphere([&](const Vec3d& h) {
+                    const double seen = alone * std::max(h.dot(out), 0.0) / cosine;
+                    return seen * facets.density(h) * moments(h)[m];
+                });
                 EXPECT_NEAR(found[m], expected, 1e-3) << roughness << " " << cosine << " " << m;
             }
         }
@@ -153,7 +152,8 @@ TEST(Fresnel, HasItsLimits) {
             }
         }
     }
-    for (double cosine = 0.05; cosine <= 1; cosine += 0.05) EXPECT_NEAR(fresnel(cosine, 1), 0, 1e-20);
+    for (double cosine = 0.05; cosine <= 1; cosine += 0.05)
+        EXPECT_NEAR(fresnel(cosine, 1), 0, 1e-20);
 }
 
 TEST(Fresnel, IsHalfOfOnePolarizationAtBrewstersAngle) {
@@ -172,7 +172,8 @@ TEST(Schlick, GoesFromStraightToAll) {
     }
     // C. Schlick's (1994) error for glass.
     for (double cosine = 0; cosine <= 1; cosine += 0.01) {
-        EXPECT_NEAR(schlick(0.04, std::max(cosine, 1e-6)), fresnel(std::max(cosine, 1e-6), 1.5), 0.04);
+        EXPECT_NEAR(schlick(0.04, std::max(cosine, 1e-6)), fresnel(std::max(cosine, 1e-6), 1.5),
+                    0.04);
     }
 }
 
@@ -217,8 +218,8 @@ TEST(CoatReflectance, LeavesToTheGroundWhatItDoesNotReflect) {
                 const Vec3d out = directionOf(cosine);
                 double mirrored = 0;
                 for (int i = 0; i < kSide * kSide; ++i) {
-                    const Vec3d half = facets.sample(
-                        out, {(i / kSide + 0.5) / kSide, (i % kSide + 0.5) / kSide});
+                    const Vec3d half =
+                        facets.sample(out, {(i / kSide + 0.5) / kSide, (i % kSide + 0.5) / kSide});
                     const Vec3d in = reflect(out, half);
                     if (in[2] <= 0 || reflectance == 0) continue;
                     mirrored += schlick(reflectance, out.dot(half)) *
@@ -231,8 +232,8 @@ TEST(CoatReflectance, LeavesToTheGroundWhatItDoesNotReflect) {
                 }
                 EXPECT_GE(coat.coat(cosine), 0);
                 EXPECT_LE(coat.coat(cosine), 1);
-                EXPECT_NEAR(mirrored, coat.coat(cosine), 1e-3) << roughness << " " << reflectance
-                                                               << " " << cosine;
+                EXPECT_NEAR(mirrored, coat.coat(cosine), 1e-3)
+                    << roughness << " " << reflectance << " " << cosine;
                 EXPECT_NEAR(ground, coat.groundOfAll(cosine), 1e-4);
                 EXPECT_NEAR(mirrored + ground, 1, reflectance == 1 ? 1.0 : 1e-3)
                     << roughness << " " << reflectance << " " << cosine;

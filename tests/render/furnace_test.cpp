@@ -25,7 +25,8 @@ Disk diskOf(const Image& image) {
     double squares = 0;
     for (int row = 0; row < image.height; ++row) {
         for (int column = 0; column < image.width; ++column) {
-            const double x = (column + 0.5) / image.width - 0.5, y = (row + 0.5) / image.height - 0.5;
+            const double x = (column + 0.5) / image.width - 0.5,
+                         y = (row + 0.5) / image.height - 0.5;
             if (std::hypot(x, y) * kFrame > kRadius - 2.5) continue;
             const double value = colorAt(image, column, row)[1];
             ++disk.pixels;
@@ -47,7 +48,9 @@ Image ballInFurnace(const Material& material, const PictureOptions& options) {
     return sceneToImage(scene, options).image;
 }
 
-PictureOptions ballPicture() { return pictureFrom({0, 0, 1}, kCenter, kSide, kFrame); }
+PictureOptions ballPicture() {
+    return pictureFrom({0, 0, 1}, kCenter, kSide, kFrame);
+}
 
 TEST(Furnace, AWhiteBallVanishesWhateverItsCoat) {
     PictureOptions options = ballPicture();

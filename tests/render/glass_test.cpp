@@ -47,7 +47,8 @@ TEST(Glass, OfNoRefractionIsInvisible) {
     int glassy = 0;
     for (std::size_t i = 0; i < with.depth.size(); ++i) {
         if (std::isfinite(with.depth[i])) ++glassy;
-        for (int c = 0; c < 4; ++c) EXPECT_NEAR(with.color[4 * i + c], empty.color[4 * i + c], 1e-6);
+        for (int c = 0; c < 4; ++c)
+            EXPECT_NEAR(with.color[4 * i + c], empty.color[4 * i + c], 1e-6);
     }
     EXPECT_GT(glassy, 200);
 }
@@ -71,7 +72,10 @@ TEST(Glass, KeepsTheLight) {
                 EXPECT_LE(value, 1 + 1e-6);
                 EXPECT_GE(value, roughness == 0 ? 0.97 : 0.3) << index << " " << i;
             }
-            EXPECT_GT(mean, roughness == 0 ? 0.97 : roughness < 0.5 ? 0.95 : 0.65) << index << " " << roughness;
+            EXPECT_GT(mean, roughness == 0    ? 0.97
+                            : roughness < 0.5 ? 0.95
+                                              : 0.65)
+                << index << " " << roughness;
         }
     }
 }
@@ -114,19 +118,19 @@ TEST(Glass, BallBendsAsSnellSays) {
         const double along = 0.5 + 2 * (outside - inside) / std::numbers::pi;
         const double mirrored = 0.5 - (std::numbers::pi - 2 * outside) / std::numbers::pi;
         // Mirrored once inside, it would leave at a third meeting, which is one too many.
-        const double expected = (1 - lost) * (1 - lost) * along +
-                                lost * (mirrored < 0 ? -mirrored : mirrored);
+        const double expected =
+            (1 - lost) * (1 - lost) * along + lost * (mirrored < 0 ? -mirrored : mirrored);
         EXPECT_NEAR(colorAt(image, 20, row)[1], expected, 2e-3) << row;
     }
 }
 
-// The middle of what is bright.
+// The middle of what is brighter than the corner, which the slab mirrors evenly.
 Vec3d middleOfBright(const Image& image, double frame) {
     double x = 0, y = 0, all = 0;
+    const double corner = colorAt(image, 0, 0)[0];
     for (int row = 0; row < image.height; ++row) {
         for (int column = 0; column < image.width; ++column) {
-            const double light = colorAt(image, column, row)[0];
-            if (light < 0.55) continue;
+            const double light = colorAt(image, column, row)[0] - corner;
             x += light * (column + 0.5);
             y += light * (row + 0.5);
             all += light;
@@ -137,7 +141,7 @@ Vec3d middleOfBright(const Image& image, double frame) {
 
 TEST(Glass, SlabShiftsWhatIsBehind) {
     const double thickness = 14, degrees = 40;
-    const auto slab = boxGrid(BBoxd(Vec3d(-48, -40, 0), Vec3d(48, 40, thickness)));
+    const auto slab = boxGrid(BBoxd(Vec3d(-66, -40, 0), Vec3d(66, 40, thickness)));
     Material white;
     white.color = Vec3d(1.0);
     const double angle = degrees * std::numbers::pi / 180;
@@ -157,10 +161,10 @@ TEST(Glass, SlabShiftsWhatIsBehind) {
         const double sine = std::sin(angle), cosine = std::cos(angle);
         const double expected =
             thickness * sine * (1 - cosine / std::sqrt(index * index - sine * sine));
-        // The eye is to the right of the normal: rays are bent towards that, and the ball appears
-        // where they come from.
-        EXPECT_NEAR(std::abs(shift[0]), expected, 0.05) << index;
-        EXPECT_GT(shift[0] * expected, 0) << index;
+        // The eye is to the right of the normal, towards which rays are bent: they come out at the
+        // right of where they would have, and show what is behind too far left.
+        // Rays go on 0.02 voxels beyond each face.
+        EXPECT_NEAR(shift[0], -expected, 0.03) << index;
         EXPECT_NEAR(shift[1], 0, 0.02);
     }
 }
@@ -177,8 +181,7 @@ TEST(Glass, IsTintedByItsThickness) {
                 surfaceOf(boxGrid(BBoxd(Vec3d(-20, -20, 0), Vec3d(20, 20, thickness))), material)};
             scene.environment = furnace();
             scene.environment.visible = true;
-            const Image image =
-                sceneToImage(scene, pictureFrom({0, 0, 1}, Vec3d(0.0), 3, 6)).image;
+            const Image image = sceneToImage(scene, pictureFrom({0, 0, 1}, Vec3d(0.0), 3, 6)).image;
             for (int c = 0; c < 3; ++c) {
                 const double left = std::pow(material.color[c], thickness / length);
                 const double again = straight * straight * left * left;
@@ -234,9 +237,8 @@ TEST(Glass, LetsLampsThroughAsFarAsItReflectsNothing) {
     Material white;
     white.color = Vec3d(1.0);
     Scene scene;
-    scene.objects = {
-        surfaceOf(boxGrid(BBoxd(Vec3d(-20, -20, -30), Vec3d(20, 20, -20))), white),
-        surfaceOf(boxGrid(BBoxd(Vec3d(-20, -20, 0), Vec3d(20, 20, 10))), glass(1.5))};
+    scene.objects = {surfaceOf(boxGrid(BBoxd(Vec3d(-20, -20, -30), Vec3d(20, 20, -20))), white),
+                     surfaceOf(boxGrid(BBoxd(Vec3d(-20, -20, 0), Vec3d(20, 20, 10))), glass(1.5))};
     scene.environment.color = Vec3d(0.0);
     Light lamp;
     lamp.followsCamera = false;

@@ -67,7 +67,8 @@ class EachKind : public testing::TestWithParam<Light::Kind> {};
 TEST_P(EachKind, ThrowsAHardShadowWhereGeometrySays) {
     const bool isPoint = GetParam() == Light::Kind::Point;
     const Vec3d place = isPoint ? Vec3d(20, 10, 90) : Vec3d(0.5, 0.3, 1);
-    const Image image = sceneToImage(shadowScene(worldLamp(GetParam(), place)), shadowPicture(60)).image;
+    const Image image =
+        sceneToImage(shadowScene(worldLamp(GetParam(), place)), shadowPicture(60)).image;
     int dark = 0, lit = 0;
     for (std::size_t i = 0; i < image.depth.size(); ++i) {
         if (std::isinf(image.depth[i])) continue;
@@ -93,15 +94,13 @@ TEST_P(EachKind, ThrowsAHardShadowWhereGeometrySays) {
 TEST_P(EachKind, ThrowsAShadowAsSoftAsItsDisk) {
     const bool isPoint = GetParam() == Light::Kind::Point;
     const Vec3d place = isPoint ? Vec3d(15, 10, 110) : Vec3d(0.3, 0.2, 1);
-    const Light lamp = worldLamp(GetParam(), place, isPoint ? 14 : 14);
+    const Light lamp = worldLamp(GetParam(), place, 14);
     PictureOptions options = shadowPicture(12);
     options.samples = 256;
-    // Small pixels, so that each has one place.
-    options.camera.frame = 1e-3;
-    Light one = lamp;
-    const Lamps lamps({one}, anyCamera());
+    options.camera.frame = 1e-3;  // all of it one place
+    const Lamps lamps({lamp}, anyCamera());
     int half = 0;
-    for (const double along : {-24.0, -18.0, -12.0, -6.0, 4.0}) {
+    for (const double along : {-31.0, -28.0, -25.0, -18.0, -12.0, -6.0, 4.0}) {
         const Vec3d at(-9, along, 0);
         options.width = options.height = 2;
         options.camera.lookat = at;
@@ -150,15 +149,16 @@ TEST(Lamps, AreADiskOfEqualSolidAngles) {
         // What a mirror sees of it, spread over its cap, is its light.
         const double seen = lamps.seenAlong(towards)[0];
         EXPECT_NEAR(seen * 2 * pi * (1 - edge), 0.8 * pi, 1e-9);
-        EXPECT_EQ(lamps.seenAlong(-towards)[0], degrees == 180 ? 0.0 : 0.0);
+        EXPECT_EQ(lamps.seenAlong(-towards)[0], 0);
     }
 }
 
 TEST(Lamps, OfNoSizeAreAPoint) {
-    const Lamps lamps({worldLamp(Light::Kind::Directional, {0, 3, 4}),
-                       worldLamp(Light::Kind::Point, {0, 0, 10})},
-                      anyCamera());
-    EXPECT_LT((lamps.sample(0, {1, 1, 1}, {0.9, 0.1}).direction - Vec3d(0, 0.6, 0.8)).length(), 1e-12);
+    const Lamps lamps(
+        {worldLamp(Light::Kind::Directional, {0, 3, 4}), worldLamp(Light::Kind::Point, {0, 0, 10})},
+        anyCamera());
+    EXPECT_LT((lamps.sample(0, {1, 1, 1}, {0.9, 0.1}).direction - Vec3d(0, 0.6, 0.8)).length(),
+              1e-12);
     const auto sample = lamps.sample(1, {0, 0, 7}, {0.9, 0.1});
     EXPECT_LT((sample.direction - Vec3d(0, 0, 1)).length(), 1e-12);
     EXPECT_NEAR(sample.distance, 3, 1e-12);
@@ -188,7 +188,8 @@ TEST(Lamps, OfASmallSizeShineAsThoseOfNone) {
         options.camera.eye = Vec3d(-45, 10, 20);
         options.camera.frame = 1e-3;
         options.samples = 64;
-        return double(sceneToImage(shadowScene(worldLamp(kind, place, size)), options).image.color[0]);
+        return double(
+            sceneToImage(shadowScene(worldLamp(kind, place, size)), options).image.color[0]);
     };
     for (const auto kind : {Light::Kind::Directional, Light::Kind::Point}) {
         const double sharp = brightness(kind, 0);

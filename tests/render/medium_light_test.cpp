@@ -61,7 +61,8 @@ TEST(MediumLight, OfWhatShinesIsWhatDoesNotPass) {
     }
 }
 
-// ∫ σ e^{-2τ} ds of light that comes from where the eye is, τ e^{-τ} of light that comes against it.
+// ∫ σ e^{-2τ} ds of light that comes from where the eye is, τ e^{-τ} of light that comes against
+// it.
 TEST(MediumLight, ScatteredOnceAlongTheViewHasAClosedForm) {
     for (const double g : {0.0, 0.6, -0.4}) {
         for (const double extinction : {0.02, 0.1}) {
@@ -196,8 +197,8 @@ TEST(MediumLight, OfHotBodiesIsThatOfTheirTemperature) {
 }
 
 TEST(MediumLight, GathersFromAMapWhatIsThere) {
-    // A map that is bright above only, and light that mostly goes onward: seen against the light the
-    // volume is brighter than with it.
+    // A map that is bright above only, and light that mostly goes onward: seen against the light
+    // the volume is brighter than with it.
     PixelArray map{8, 4, 3, std::vector<float>(96, 0.0F)};
     std::fill_n(map.values.begin(), 24, 4.0F);
     Scene scene = blobScene(4, 0.02);

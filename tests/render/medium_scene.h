@@ -66,7 +66,8 @@ inline openvdb::FloatGrid::Ptr blobGrid(double sigma) {
 /// ∫ of blobGrid's density along a whole line, world units.
 inline double throughBlob(const openvdb::FloatGrid& grid, double sigma, const Ray& ray) {
     const openvdb::Vec3d origin = grid.worldToIndex(ray.origin) - kBlobMiddle;
-    const openvdb::Vec3d step = grid.worldToIndex(ray.origin + ray.direction) - kBlobMiddle - origin;
+    const openvdb::Vec3d step =
+        grid.worldToIndex(ray.origin + ray.direction) - kBlobMiddle - origin;
     const double beside = origin.cross(step.unit()).lengthSqr();
     return std::sqrt(2 * std::numbers::pi) * sigma / step.length() *
            std::exp(-0.5 * beside / (sigma * sigma));

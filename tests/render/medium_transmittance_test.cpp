@@ -188,7 +188,8 @@ TEST(Transmittance, IsWhatThePictureLetsThrough) {
     const Image image = sceneToImage(scene, pictureFrom({0.2, 0.1, 1}, kBlobMiddle, 15, 30)).image;
     const Vec3d forward = -Vec3d(0.2, 0.1, 1).unit();
     const Vec3d middle = kBlobMiddle - 100 * forward;
-    const double expected = std::exp(-0.1 * throughBlob(*scene.objects[0].grid, 5, {middle, forward}));
+    const double expected =
+        std::exp(-0.1 * throughBlob(*scene.objects[0].grid, 5, {middle, forward}));
     EXPECT_NEAR(1 - image.color[4 * (7 * 15 + 7) + 3], expected, 1e-4);
     EXPECT_NEAR(image.depth[7 * 15 + 7], 100, 3);
 }

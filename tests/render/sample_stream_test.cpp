@@ -1,6 +1,7 @@
+#include "render/sample_stream.h"
+
 #include "render/filter_places.h"
 #include "render/picture.h"
-#include "render/sample_stream.h"
 
 #include <gtest/gtest.h>
 

@@ -17,7 +17,8 @@ openvdb::FloatGrid::Ptr boxGrid(const openvdb::BBoxd& box) {
     return makeGrid(voxels, {}, [&box](const Vec3d& x) {
         double density = 1;
         for (int axis = 0; axis < 3; ++axis) {
-            density *= faceDensity(x[axis] - box.max()[axis]) - faceDensity(x[axis] - box.min()[axis]);
+            density *=
+                faceDensity(x[axis] - box.max()[axis]) - faceDensity(x[axis] - box.min()[axis]);
         }
         return density;
     });

@@ -1,5 +1,6 @@
-#include "render/ball_scene.h"
 #include "render/volume_blocks.h"
+
+#include "render/ball_scene.h"
 
 #include <bandvox/reconstruct/brick_reconstruction.h>
 
@@ -40,7 +41,8 @@ double compare(const openvdb::FloatGrid::ConstPtr& grid,
     for (int i = 0; i < 40000; ++i) {
         Vec3d place(uniform(random), uniform(random), uniform(random));
         // Half of them in the middle between nodes.
-        if (i % 2) place = Vec3d(std::floor(place[0]), std::floor(place[1]), std::floor(place[2])) + 0.5;
+        if (i % 2)
+            place = Vec3d(std::floor(place[0]), std::floor(place[1]), std::floor(place[2])) + 0.5;
         const double density = probe->value(place), bound = boundAt(blocks, place);
         // What a spline adds far from its nodes, or what was cut off of the band-limited lattice.
         EXPECT_LE(density, bound + (filter || bound > 0 ? 3e-4 : 4e-3)) << place;
@@ -62,14 +64,13 @@ TEST(VolumeBlocks, BoundTheBandLimitedDensity) {
             all.emplace_back(place, uniform(random));
         }
         all[0] = {Vec3d(20.5, 16.5, 15.5), 1};
-        const auto grid = render_test::makeGrid(
-            {Coord(-8), Coord(48)}, {}, [&](const Vec3d& x) {
-                double sum = 0;
-                for (const auto& [place, size] : all) {
-                    sum += 0.5 * size * std::exp(-0.5 * (x - place).lengthSqr() / (sigma * sigma));
-                }
-                return sum;
-            });
+        const auto grid = render_test::makeGrid({Coord(-8), Coord(48)}, {}, [&](const Vec3d& x) {
+            double sum = 0;
+            for (const auto& [place, size] : all) {
+                sum += 0.5 * size * std::exp(-0.5 * (x - place).lengthSqr() / (sigma * sigma));
+            }
+            return sum;
+        });
         const double closest = compare(grid, ExponentialFilter(), -6, 46);
         EXPECT_GT(closest, 0.9);  // nor are they far above
     }

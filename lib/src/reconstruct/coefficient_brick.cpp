@@ -145,8 +145,8 @@ CoefficientBrick::CoefficientBrick(const openvdb::FloatGrid& grid, const openvdb
              {nodes, nodes * rowLength, plane, nodes * rowLength}, rowLength, taps);
     const auto pitch = static_cast<std::size_t>(mPitch);
     mCoefficients.assign(nodes * nodes * pitch, 0.0F);
-    convolve(scratch.lattice.data(), mCoefficients.data(),
-             {nodes * nodes, nodes, rowLength, pitch}, 1, taps);
+    convolve(scratch.lattice.data(), mCoefficients.data(), {nodes * nodes, nodes, rowLength, pitch},
+             1, taps);
 }
 
 double CoefficientBrick::value(const SpreadingKernel& kernel, const openvdb::Vec3d& local) const {

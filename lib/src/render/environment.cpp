@@ -61,8 +61,8 @@ EnvironmentMap::EnvironmentMap(PixelArray pixels, double turn, const std::string
     mColumns.assign(static_cast<std::size_t>(height) * (width + 1), 0.0);
     for (int row = 0; row < height; ++row) {
         const double polar = pi * (row + 0.5) / height;
-        const double area = 2 * pi / width * (std::cos(pi * row / height) -
-                                              std::cos(pi * (row + 1) / height));
+        const double area =
+            2 * pi / width * (std::cos(pi * row / height) - std::cos(pi * (row + 1) / height));
         double* sums = &mColumns[static_cast<std::size_t>(row) * (width + 1)];
         for (int column = 0; column < width; ++column) {
             const Vec3d light = pixel(column, row);
@@ -84,8 +84,8 @@ EnvironmentMap::EnvironmentMap(PixelArray pixels, double turn, const std::string
 
 Vec3d EnvironmentMap::pixel(int column, int row) const {
     const float* values =
-        &mPixels.values[(static_cast<std::size_t>(row) * mPixels.width + column) *
-                        mPixels.channels];
+        &mPixels
+             .values[(static_cast<std::size_t>(row) * mPixels.width + column) * mPixels.channels];
     if (mPixels.channels < 3) return Vec3d(values[0]);
     return {values[0], values[1], values[2]};
 }
@@ -142,9 +142,9 @@ double EnvironmentMap::density(const Vec3d& direction) const {
     const int column = std::clamp(static_cast<int>(place[0]), 0, mPixels.width - 1);
     const int row = std::clamp(static_cast<int>(place[1]), 0, mPixels.height - 1);
     const double* sums = &mColumns[static_cast<std::size_t>(row) * (mPixels.width + 1)];
-    const double area = 2 * pi / mPixels.width *
-                        (std::cos(pi * row / mPixels.height) -
-                         std::cos(pi * (row + 1) / mPixels.height));
+    const double area =
+        2 * pi / mPixels.width *
+        (std::cos(pi * row / mPixels.height) - std::cos(pi * (row + 1) / mPixels.height));
     return (mRows[row + 1] - mRows[row]) * (sums[column + 1] - sums[column]) / area;
 }
 

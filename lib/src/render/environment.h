@@ -45,9 +45,9 @@ class EnvironmentMap {
     openvdb::Vec2d placeOf(const openvdb::Vec3d& direction) const;
 
     PixelArray mPixels;
-    double mSine, mCosine;          // of the turn
-    std::vector<double> mRows;      // brightness of the rows up to each, 0 first, 1 last
-    std::vector<double> mColumns;   // [height][width + 1], the same in each row
+    double mSine, mCosine;         // of the turn
+    std::vector<double> mRows;     // brightness of the rows up to each, 0 first, 1 last
+    std::vector<double> mColumns;  // [height][width + 1], the same in each row
     std::array<openvdb::Vec3d, 9> mHarmonics{};
 };
 

@@ -95,8 +95,8 @@ Vec3d LightPaths::meet(const Path& path, const NearestSurface& found, Thread& th
     const LocalFrame frame(normal);
     Vec3d out = frame.toLocal(-path.ray.direction);
     out[2] = std::max(out[2], kLeastCosine);
-    const Meeting at{object, found.surface, place, normal, frame, out.unit(),
-                     object.colorAt(place)};
+    const Meeting at{object,     found.surface,        place, normal, frame,
+                     out.unit(), object.colorAt(place)};
     const double transparency = object.material().transparency;
     Vec3d light(0.0);
     if (transparency < 1 && !found.leaving) {
@@ -209,8 +209,7 @@ Vec3d LightPaths::gathered(const Path& path, const Meeting& at, Thread& thread) 
 LightPaths::Path LightPaths::mirror(const Path& path, const Meeting& at, const Vec3d& half,
                                     double weight) const {
     Path next = path;
-    next.ray = {at.place + beyond(at) * at.normal,
-                at.frame.toWorld(reflect(at.out, half)).unit()};
+    next.ray = {at.place + beyond(at) * at.normal, at.frame.toWorld(reflect(at.out, half)).unit()};
     next.depth = path.depth + 1;
     next.reach = kFar;
     next.weight = path.weight * weight;
@@ -256,8 +255,8 @@ Vec3d LightPaths::glass(const Path& path, const Meeting& at, bool leaving, Threa
         light += weight * follow(mirror(path, at, half, both ? weight : seen), thread);
     }
     Vec3d through;
-    if ((both || !chooseMirror) && reflected < 1 &&
-        refract(at.out, half, ratio, through) && through[2] < 0) {
+    if ((both || !chooseMirror) && reflected < 1 && refract(at.out, half, ratio, through) &&
+        through[2] < 0) {
         const double seen = facets.seenFromIn(at.out[2], -through[2]);
         const double weight = (both ? 1 - reflected : 1) * seen;
         Path next = path;

@@ -17,7 +17,7 @@ struct PathLight {
     openvdb::Vec3d light{0, 0, 0};  ///< without the background
     double coverage = 0;            ///< the part of the background that is hidden
     std::optional<SurfaceHit> hit;  ///< the first surface
-    double depth = -1;              ///< along the ray, of volumes if no surface is hit; < 0: nothing
+    double depth = -1;  ///< along the ray, of volumes if no surface is hit; < 0: nothing
 };
 
 /// Follows lines of sight to where light comes from, as TransportOptions has it.
@@ -34,12 +34,12 @@ class LightPaths {
     struct Path {
         Ray ray;
         InsideOf inside;
-        int depth = 0;       // how often it has been mirrored or refracted
-        int bounces = 0;     // and sent on by matt surfaces
+        int depth = 0;    // how often it has been mirrored or refracted
+        int bounces = 0;  // and sent on by matt surfaces
         double reach = std::numeric_limits<double>::max();  // beyond, nothing is in its way
-        double weight = 1;   // the largest part of its light that arrives
-        bool isSharp = true;      // mirrored and refracted by even facets only
-        bool isStraight = true;   // not mirrored: what it sees lies behind
+        double weight = 1;       // the largest part of its light that arrives
+        bool isSharp = true;     // mirrored and refracted by even facets only
+        bool isStraight = true;  // not mirrored: what it sees lies behind
     };
     // A place where a path meets a surface.
     struct Meeting {
@@ -48,7 +48,7 @@ class LightPaths {
         openvdb::Vec3d place;
         openvdb::Vec3d normal;  // towards the path's ray
         LocalFrame frame;
-        openvdb::Vec3d out;    // local, against the ray
+        openvdb::Vec3d out;  // local, against the ray
         openvdb::Vec3d color;
     };
     struct Thread {

@@ -166,7 +166,8 @@ Vec3d MediumTransport::source(int i, const Vec3d& place, const Ray& ray, const I
         // Look in one direction for what comes from around.
         const openvdb::Vec2d u = numbers.next2();
         const double z = 1 - 2 * u[0], across = std::sqrt(std::max(1 - z * z, 0.0));
-        const Vec3d direction(across * std::cos(2 * pi * u[1]), across * std::sin(2 * pi * u[1]), z);
+        const Vec3d direction(across * std::cos(2 * pi * u[1]), across * std::sin(2 * pi * u[1]),
+                              z);
         const double end = mTransport.gatherDistance > 0 ? mTransport.gatherDistance
                                                          : std::numeric_limits<double>::max();
         const Ray outward{place, direction};

@@ -114,8 +114,7 @@ class Painter {
         std::optional<Sight> nearest;
         double mediumDepth = 0, mediumWeight = 0;
         for (std::size_t s = 0; s < mPlaces.size(); ++s) {
-            const Ray ray =
-                mCamera.ray(pictureColumn + mPlaces[s][0], pictureRow + mPlaces[s][1]);
+            const Ray ray = mCamera.ray(pictureColumn + mPlaces[s][0], pictureRow + mPlaces[s][1]);
             SampleStream numbers(mOptions.seed, static_cast<std::uint32_t>(pictureColumn),
                                  static_cast<std::uint32_t>(pictureRow),
                                  static_cast<std::uint32_t>(s));
@@ -206,8 +205,8 @@ void drawWithPreview(Painter& painter, Image& image, const PictureOptions& optio
     if (scene.surfaces().size() == 1 && scene.volumes().empty()) {
         const SurfaceObject& surface = *scene.surfaces().front();
         if (surface.maximum() < surface.threshold()) {
-            message << "the density reaches " << surface.maximum()
-                    << " only, below the iso-value " << surface.threshold();
+            message << "the density reaches " << surface.maximum() << " only, below the iso-value "
+                    << surface.threshold();
             throw Error(ErrorKind::Result, message.str());
         }
     }

@@ -56,8 +56,8 @@ void forNeighbours(const openvdb::Coord& local, const Visitor& visit) {
 }
 
 // How far above the nodes the density between them rises at most: as that of a point in the middle
-// between eight of them. For a Gaussian, g(x) / g(x - h) is what a sum of such points obeys as well,
-// as long as none is negative; for others it is what solids do not exceed.
+// between eight of them. For a Gaussian, g(x) / g(x - h) is what a sum of such points obeys as
+// well, as long as none is negative; for others it is what solids do not exceed.
 double riseAboveNodes(const std::optional<ExponentialFilter>& filter) {
     if (!filter) return kSplineRise;
     constexpr int kFrequencies = 512;
@@ -66,7 +66,7 @@ double riseAboveNodes(const std::optional<ExponentialFilter>& filter) {
     for (int i = 0; i < kFrequencies; ++i) {
         const double k = 0.5 * (i + 0.5) / kFrequencies;
         const double turn = 2 * std::numbers::pi * k * farthest;
-        const double weight = (*filter)(k) * k * k;
+        const double weight = (*filter)(k)*k * k;
         there += weight;
         atNodes += weight * std::sin(turn) / turn;
     }
@@ -133,7 +133,8 @@ VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid,
         mFinite = mFinite && found[i].finite;
         const openvdb::Coord block = leaves[i]->origin() >> kBlockLog2;
         for (int n = 0; n < 27; ++n) {
-            if (found[i].most[n] > kNoDensity) raise(neighbourOf(block, n), rise * found[i].most[n]);
+            if (found[i].most[n] > kNoDensity)
+                raise(neighbourOf(block, n), rise * found[i].most[n]);
         }
     }
     mBox = boxOfBlocks(mBlocks);

@@ -27,9 +27,8 @@ class VolumeBlocks {
     /// 0 ≤ t ≤ `end`, in order; stops when it returns true.
     template <typename Visitor>
     void walk(const Ray& ray, double end, const Visitor& visit) const {
-        walkBlocks(mBlocks, mBox, ray, end, [&](double t0, double t1, float most) {
-            return visit(t0, t1, double(most));
-        });
+        walkBlocks(mBlocks, mBox, ray, end,
+                   [&](double t0, double t1, float most) { return visit(t0, t1, double(most)); });
     }
 
   private:
