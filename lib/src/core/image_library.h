@@ -22,8 +22,8 @@ struct PixelArray {
 struct PngRows {
     int width = 0, height = 0;
     std::vector<std::pair<std::string, std::string>> metadata;
-    /// Sets `pixels`, [bottom - top][width][4], to rows of linear R G B, not multiplied by the alpha
-    /// that follows. Is asked for rows from the top, and may throw.
+    /// Sets `pixels`, [bottom - top][width][4], to rows of linear R G B, not multiplied by the
+    /// alpha that follows. Is asked for rows from the top, and may throw.
     std::function<void(int top, int bottom, std::vector<float>& pixels)> rows;
 };
 

@@ -33,8 +33,8 @@ Vec3d tristimulus(double kelvin) {
     Vec3d sum(0.0);
     for (double nm = 380; nm <= 780; nm += 2) {
         const double scaled = nm / 560;
-        sum += eyeResponse(nm) /
-               (std::pow(scaled, 5) * std::expm1(kSecondConstant / (nm * kelvin)));
+        sum +=
+            eyeResponse(nm) / (std::pow(scaled, 5) * std::expm1(kSecondConstant / (nm * kelvin)));
     }
     return sum;
 }

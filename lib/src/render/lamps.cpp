@@ -46,9 +46,9 @@ LampSample Lamps::sample(int i, const Vec3d& place, const Vec2d& u) const {
             const double depth = (1 - std::cos(halfAngle(light))) * disk.lengthSqr();
             const double radius = std::sqrt(std::max(2 - depth, 0.0));
             const double scale = std::sqrt(1 - std::cos(halfAngle(light)));
-            sample.direction = LocalFrame(light.place)
-                                   .toWorld({scale * radius * disk[0], scale * radius * disk[1],
-                                             1 - depth});
+            sample.direction =
+                LocalFrame(light.place)
+                    .toWorld({scale * radius * disk[0], scale * radius * disk[1], 1 - depth});
         }
         return sample;
     }

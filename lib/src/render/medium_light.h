@@ -45,12 +45,12 @@ class MediumTransport {
     const Lamps& mLamps;
     const TransportOptions mTransport;
     VolumeOptions::Method mMethod;
-    double mStep = 0;  // world units
+    double mStep = 0;                 // world units
     openvdb::Vec3d mAround{0, 0, 0};  // the mean of the light from around
 };
 
-/// What part of scattered light goes on at an angle with this cosine to where it came from, per solid
-/// angle. L. Henyey, J. Greenstein: "Diffuse Radiation in the Galaxy" (1941).
+/// What part of scattered light goes on at an angle with this cosine to where it came from, per
+/// solid angle. L. Henyey, J. Greenstein: "Diffuse Radiation in the Galaxy" (1941).
 double henyeyGreenstein(double cosine, double anisotropy);
 
 }  // namespace bandvox

@@ -78,9 +78,9 @@ void describe(Image& image, const PictureOptions& options, const Camera& camera)
     const bool perspective = camera.projection() == CameraOptions::Projection::Perspective;
     image.metadata.emplace_back("bandvox_camera",
                                 std::string(perspective ? "perspective" : "orthographic"));
-    for (const auto& [name, v] : {std::pair{"bandvox_eye", camera.eye()},
-                                  std::pair{"bandvox_forward", camera.forward()},
-                                  std::pair{"bandvox_up", camera.upward()}}) {
+    for (const auto& [name, v] :
+         {std::pair{"bandvox_eye", camera.eye()}, std::pair{"bandvox_forward", camera.forward()},
+          std::pair{"bandvox_up", camera.upward()}}) {
         std::ostringstream text;
         text << std::setprecision(9) << v[0] << ',' << v[1] << ',' << v[2];
         image.metadata.emplace_back(name, text.str());

@@ -15,8 +15,8 @@
 
 namespace bandvox {
 
-/// Where the lines of sight of a pixel, [0, 1)², pass, or, under a filter that reaches farther, around
-/// it: rows of evenly spaced places, drawn closer where the filter weighs more.
+/// Where the lines of sight of a pixel, [0, 1)², pass, or, under a filter that reaches farther,
+/// around it: rows of evenly spaced places, drawn closer where the filter weighs more.
 std::vector<openvdb::Vec2d> samplePlaces(int samples, PixelFilter filter = PixelFilter::Box);
 
 /// The part of the picture that is drawn: all of it, or the crop window.

@@ -134,8 +134,8 @@ Vec3d PreparedScene::passing(int i, const Ray& ray, double end, bool inside,
     double t = 0;
     for (int pass = 0; pass < kMostPasses; ++pass) {
         const Ray rest{ray.origin + t * ray.direction, ray.direction};
-        const auto hit = inside ? surface.exit(rest, end - t, probe)
-                                : surface.entry(rest, end - t, probe);
+        const auto hit =
+            inside ? surface.exit(rest, end - t, probe) : surface.entry(rest, end - t, probe);
         // Without an exit before the end, the place that light comes from is in the glass.
         const double length = hit ? hit->t : end - t;
         if (inside && std::isfinite(length)) left *= tint(i, length);

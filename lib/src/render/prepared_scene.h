@@ -61,8 +61,8 @@ class PreparedScene {
     /// The light from around that comes from a direction.
     openvdb::Vec3d environmentAlong(const openvdb::Vec3d& direction) const;
 
-    /// What a white matt surface of this normal sends out of the light from around, if nothing is in
-    /// the way.
+    /// What a white matt surface of this normal sends out of the light from around, if nothing is
+    /// in the way.
     openvdb::Vec3d environmentOn(const openvdb::Vec3d& normal) const;
 
     SceneProbes probes() const;

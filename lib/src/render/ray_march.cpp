@@ -224,8 +224,7 @@ std::optional<RayHit> RayMarch::firstHit(const Ray& ray, DensityProbe& density, 
     return marchAlong(ray, mBlocks, {density, mIso, mClear, mLattice}, 1, end);
 }
 
-std::optional<RayHit> RayMarch::firstExit(const Ray& ray, DensityProbe& density,
-                                          double end) const {
+std::optional<RayHit> RayMarch::firstExit(const Ray& ray, DensityProbe& density, double end) const {
     return marchAlong(ray, mBlocks, {density, mIso, mClear, mLattice}, -1, end);
 }
 

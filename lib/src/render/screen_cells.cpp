@@ -42,8 +42,8 @@ ScreenCells::ScreenCells(const Camera& camera, int width, int height, double mar
 
 void ScreenCells::widen(Span& cell, double near, double far) {
     cell.near = std::min(cell.near, std::nextafter(static_cast<float>(near), 0.0F));
-    cell.far = std::max(cell.far, std::nextafter(static_cast<float>(far),
-                                                 std::numeric_limits<float>::max()));
+    cell.far = std::max(cell.far,
+                        std::nextafter(static_cast<float>(far), std::numeric_limits<float>::max()));
 }
 
 // Marks the cells in which a ball can be seen.
@@ -62,9 +62,9 @@ void ScreenCells::cover(const openvdb::Vec3d& middle, double radius) {
     // that it is projected to is at its nearest depth, and it lies askew.
     const openvdb::Vec2d place = mCamera.project(middle);
     const double askew = perspective ? distance / depth : 1;
-    const double reach = radius * mCamera.pixelsPerLength(depth - (perspective ? radius : 0)) *
-                             askew * askew +
-                         mMargin;
+    const double reach =
+        radius * mCamera.pixelsPerLength(depth - (perspective ? radius : 0)) * askew * askew +
+        mMargin;
     const int left = static_cast<int>(std::clamp(std::floor(place[0] - reach), 0.0, 1.0 * mWidth));
     const int right =
         static_cast<int>(std::clamp(std::floor(place[0] + reach), -1.0, mWidth - 1.0));

@@ -21,8 +21,8 @@ struct DrawableGrid {
     bool isLevelSet = false;
 };
 
-/// `iso`: as asked for, if it was. Throws Error(ErrorKind::Input) for a grid that cannot be drawn, or
-/// whose stored iso-value is not above its background; Error(ErrorKind::Usage) for an iso-value
+/// `iso`: as asked for, if it was. Throws Error(ErrorKind::Input) for a grid that cannot be drawn,
+/// or whose stored iso-value is not above its background; Error(ErrorKind::Usage) for an iso-value
 /// asked for that is not.
 DrawableGrid makeDrawable(const openvdb::FloatGrid::ConstPtr& grid,
                           const std::optional<double>& iso);

@@ -60,8 +60,8 @@ class Camera {
 
     /// Turns world points, rows of coordinates, into the camera's: x right, y up, z along the view.
     openvdb::math::Mat4d worldToCamera() const;
-    /// Turns world points into the picture's: x and y from -1 to 1, from the lower left, z from 0 in
-    /// the eye's plane; under perspective to be divided by the fourth coordinate.
+    /// Turns world points into the picture's: x and y from -1 to 1, from the lower left, z from 0
+    /// in the eye's plane; under perspective to be divided by the fourth coordinate.
     openvdb::math::Mat4d worldToScreen() const;
 
     CameraOptions::Projection projection() const { return mProjection; }

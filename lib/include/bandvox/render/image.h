@@ -22,10 +22,10 @@ using ImageAttribute = std::variant<std::string, int, double, openvdb::math::Mat
 struct Image {
     int width = 0;
     int height = 0;
-    int left = 0;        ///< of a picture that is a part of a larger one: its place there
-    int top = 0;         ///< the same
-    int fullWidth = 0;   ///< of the larger one; 0 if it is none
-    int fullHeight = 0;  ///< the same
+    int left = 0;                 ///< of a picture that is a part of a larger one: its place there
+    int top = 0;                  ///< the same
+    int fullWidth = 0;            ///< of the larger one; 0 if it is none
+    int fullHeight = 0;           ///< the same
     std::vector<float> color;     ///< [height][width][4] linear R G B, A; colour times coverage
     std::vector<float> depth;     ///< [height][width] world units along the view; inf where nothing
     std::vector<float> normal;    ///< [height][width][3] world, unit; 0 where nothing

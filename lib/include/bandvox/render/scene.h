@@ -13,34 +13,36 @@ namespace bandvox {
 /// What a surface is made of: a matt ground under a coat that reflects, or glass, or something
 /// between the two.
 struct Material {
-    openvdb::Vec3d color{0.8, 0.8, 0.8};  ///< linear, what the matt ground reflects, 0 to 1e6; light
-                                          ///< only ever gets less if it is 1 at most
-    double roughness = 0.3;     ///< of the coat or the glass, 0 (a mirror) to 1; the square of it is
-                                ///< the width of the facets' slopes
-    double reflectance = 0;     ///< of the coat seen straight on, 0 (none) to 1
-    double transparency = 0;    ///< part of the surface that is glass, 0 to 1
+    openvdb::Vec3d color{0.8, 0.8, 0.8};  ///< linear, what the matt ground reflects, 0 to 1e6;
+                                          ///< light only ever gets less if it is 1 at most
+    double roughness = 0.3;   ///< of the coat or the glass, 0 (a mirror) to 1; the square of it is
+                              ///< the width of the facets' slopes
+    double reflectance = 0;   ///< of the coat seen straight on, 0 (none) to 1
+    double transparency = 0;  ///< part of the surface that is glass, 0 to 1
     double refractiveIndex = 1.5;  ///< of the glass, 1 to 4
-    double tintLength = 0;      ///< world units of glass after which light has become `color`; 0
-                                ///< leaves it clear
+    double tintLength = 0;         ///< world units of glass after which light has become `color`; 0
+                                   ///< leaves it clear
 };
 
 /// What fills a volume. Its density, times `extinction`, is the part of light that is stopped per
 /// world unit.
 struct Medium {
-    openvdb::Vec3d color{0.9, 0.9, 0.9};  ///< linear, what is scattered of the light stopped, 0 to 1
+    openvdb::Vec3d color{0.9, 0.9,
+                         0.9};  ///< linear, what is scattered of the light stopped, 0 to 1
     double extinction = 0;  ///< per world unit where the density is 1; 0 chooses it so that through
                             ///< the longest side of the box e^-10 is left
     double anisotropy = 0;  ///< g of the phase function, -1 (back) to 1 (onward), both excluded
-    openvdb::Vec3d emission{0, 0, 0};  ///< linear, what so much of it that nothing passes shines with
-    double glow = 1;  ///< of the temperature, if there is one: the luminance of 2000 K
+    openvdb::Vec3d emission{0, 0,
+                            0};  ///< linear, what so much of it that nothing passes shines with
+    double glow = 1;             ///< of the temperature, if there is one: the luminance of 2000 K
 };
 
 /// A grid that is seen.
 struct SceneObject {
     enum class Kind { Surface, Volume } kind = Kind::Surface;
-    openvdb::FloatGrid::ConstPtr grid;          ///< density or level set; never null
-    std::optional<double> iso;                  ///< default: as stored, else 0.5, or 0 of a level set
-    openvdb::Vec3SGrid::ConstPtr colors;        ///< where active, instead of the material's color
+    openvdb::FloatGrid::ConstPtr grid;    ///< density or level set; never null
+    std::optional<double> iso;            ///< default: as stored, else 0.5, or 0 of a level set
+    openvdb::Vec3SGrid::ConstPtr colors;  ///< where active, instead of the material's color
     openvdb::FloatGrid::ConstPtr temperatures;  ///< kelvin; of a volume that glows
     Material material;                          ///< of a surface
     Medium medium;                              ///< of a volume
