@@ -109,7 +109,8 @@ TEST(SurfaceBlocks, StopsWhenToldTo) {
     grid->tree().addTile(2, Coord(0), 1.0F, true);
     const SurfaceBlocks blocks(*grid, 0.5);
     int visits = 0;
-    blocks.walk({Vec3d(-50, 3, 3), Vec3d(1, 0, 0)}, 1e30, [&](double, double) { return ++visits == 2; });
+    blocks.walk({Vec3d(-50, 3, 3), Vec3d(1, 0, 0)}, 1e30,
+                [&](double, double) { return ++visits == 2; });
     EXPECT_EQ(visits, 2);
 }
 

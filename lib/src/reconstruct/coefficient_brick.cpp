@@ -1,7 +1,6 @@
 #include "reconstruct/coefficient_brick.h"
 
 #include "core/instruction_sets.h"
-#include "core/lanes.h"
 
 #include <algorithm>
 #include <limits>
@@ -79,48 +78,38 @@ struct ConvolutionRows {
     std::size_t count, length, inPitch, outPitch;
 };
 
-// out[p] = Σ_l a_l in[p + (L + l)·stride] for kVectors · kLanes outputs from p on.
-template <int kVectors, int kLanes>
-[[gnu::always_inline]] inline void convolveLanes(const float* middle, float* out,
-                                                 std::size_t stride, std::span<const float> taps) {
-    Lanes<kLanes> sum[kVectors], before, after;
-    for (int v = 0; v < kVectors; ++v) {
-        loadLanes<kLanes>(middle + v * kLanes, sum[v]);
-        sum[v] *= taps[0];
-    }
+// out[p] = Σ_l a_l in[p + (L + l)·stride] for kCount outputs from p on. A prefilter that goes far
+// towards Nyquist has terms a thousand times its sum, whose rounding would be seen in a float.
+template <int kCount>
+[[gnu::always_inline]] inline void convolveSome(const float* middle, float* out, std::size_t stride,
+                                                std::span<const double> taps) {
+    double sum[kCount];
+    for (int p = 0; p < kCount; ++p) sum[p] = taps[0] * middle[p];
     for (std::size_t l = 1; l < taps.size(); ++l) {
-        for (int v = 0; v < kVectors; ++v) {
-            loadLanes<kLanes>(middle + v * kLanes - l * stride, before);
-            loadLanes<kLanes>(middle + v * kLanes + l * stride, after);
-            sum[v] += taps[l] * (before + after);
-        }
+        const float* before = middle - l * stride;
+        const float* after = middle + l * stride;
+        for (int p = 0; p < kCount; ++p) sum[p] += taps[l] * (double(before[p]) + after[p]);
     }
-    for (int v = 0; v < kVectors; ++v) storeLanes<kLanes>(sum[v], out + v * kLanes);
+    for (int p = 0; p < kCount; ++p) out[p] = static_cast<float>(sum[p]);
 }
 
 // Convolves along the axis whose neighbours are `stride` apart.
 BANDVOX_FOR_EACH_INSTRUCTION_SET
 void convolve(const float* in, float* out, const ConvolutionRows& rows, std::size_t stride,
-              std::span<const float> taps) {
-    constexpr int kVectors = 4, kLanes = 16, kFewLanes = 8;
+              std::span<const double> taps) {
+    constexpr int kMany = 32, kFew = 8;
     const std::size_t reach = taps.size() - 1;
     for (std::size_t row = 0; row < rows.count; ++row) {
         const float* middle = in + row * rows.inPitch + reach * stride;
         float* to = out + row * rows.outPitch;
         std::size_t p = 0;
-        for (; p + kVectors * kLanes <= rows.length; p += kVectors * kLanes) {
-            convolveLanes<kVectors, kLanes>(middle + p, to + p, stride, taps);
+        for (; p + kMany <= rows.length; p += kMany) {
+            convolveSome<kMany>(middle + p, to + p, stride, taps);
         }
-        for (; p + kFewLanes <= rows.length; p += kFewLanes) {
-            convolveLanes<1, kFewLanes>(middle + p, to + p, stride, taps);
+        for (; p + kFew <= rows.length; p += kFew) {
+            convolveSome<kFew>(middle + p, to + p, stride, taps);
         }
-        for (; p < rows.length; ++p) {
-            float sum = taps[0] * middle[p];
-            for (std::size_t l = 1; l <= reach; ++l) {
-                sum += taps[l] * (middle[p - l * stride] + middle[p + l * stride]);
-            }
-            to[p] = sum;
-        }
+        for (; p < rows.length; ++p) convolveSome<1>(middle + p, to + p, stride, taps);
     }
 }
 
@@ -147,7 +136,7 @@ CoefficientBrick::CoefficientBrick(const openvdb::FloatGrid& grid, const openvdb
     }
 
     // Convolve along x, then y, then z; each pass leaves fewer planes, rows, or nodes.
-    const std::vector<float> taps(design.prefilter.begin(), design.prefilter.end());
+    const std::span<const double> taps = design.prefilter;
     const std::size_t rowLength = side, plane = rowLength * side, nodes = mNodes;
     scratch.filtered.resize(nodes * plane);
     convolve(scratch.lattice.data(), scratch.filtered.data(), {1, nodes * plane, 0, 0}, plane,

@@ -20,7 +20,7 @@ using std::numbers::pi;
 
 // The prefilter's taps on each side: the halo of a brick is this and half a kernel.
 constexpr int kShortestPrefilter = 4;
-constexpr int kLongestPrefilter = 24;
+constexpr int kLongestPrefilter = 32;
 
 // Frequencies at which errors are weighed, midpoints of [0, 1/2].
 constexpr int kFrequencies = 256;

@@ -31,7 +31,8 @@ openvdb::BBoxd boxOfBlocks(const BlockTree& blocks) {
     return {box.min().asVec3d(), box.max().offsetBy(1).asVec3d()};
 }
 
-/// Calls `visit(t0, t1, value)` for each active block on the way of a ray, in order; stops when it returns true. `box` holds all blocks.
+/// Calls `visit(t0, t1, value)` for each active block on the way of a ray, in order; stops when it
+/// returns true. `box` holds all blocks.
 template <typename BlockTree, typename Visitor>
 void walkBlocks(const BlockTree& blocks, const openvdb::BBoxd& box, BlockRay blockRay,
                 const Visitor& visit) {

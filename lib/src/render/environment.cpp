@@ -118,6 +118,10 @@ Vec3d EnvironmentMap::irradiance(const Vec3d& normal) const {
     return {std::max(sum[0], 0.0), std::max(sum[1], 0.0), std::max(sum[2], 0.0)};
 }
 
+Vec3d EnvironmentMap::mean() const {
+    return harmonics({0, 1, 0})[0] * mHarmonics[0];
+}
+
 EnvironmentMap::Sample EnvironmentMap::sample(const Vec2d& u) const {
     const auto [row, down] = findIn(mRows.data(), mPixels.height, u[0]);
     const double* sums = &mColumns[static_cast<std::size_t>(row) * (mPixels.width + 1)];

@@ -27,6 +27,9 @@ class EnvironmentMap {
     /// (2001): by the first nine spherical harmonics, within 1 % on average, 9 % at most.
     openvdb::Vec3d irradiance(const openvdb::Vec3d& normal) const;
 
+    /// The mean over all directions.
+    openvdb::Vec3d mean() const;
+
     /// A direction drawn by brightness, and how often it is, per solid angle.
     struct Sample {
         openvdb::Vec3d direction;

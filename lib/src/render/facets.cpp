@@ -83,18 +83,20 @@ bool refract(const Vec3d& out, const Vec3d& half, double ratio, Vec3d& direction
 
 CoatReflectance::CoatReflectance(const Facets& facets, double reflectance) {
     if (!(reflectance > 0)) return;
-    // Average what sampled facets reflect.
+    // Average what sampled facets reflect. Towards the edge of the disk of facets, u_0 = 1, it
+    // falls as a square root does: there places are closer to each other, and weigh less.
     constexpr int kSide = 32;
     for (int i = 0; i <= kSteps; ++i) {
         const double cosine = std::max(double(i) / kSteps, 1e-3);
         const Vec3d out(std::sqrt(1 - cosine * cosine), 0, cosine);
         double sum = 0;
         for (int s = 0; s < kSide * kSide; ++s) {
-            const Vec3d half =
-                facets.sample(out, {(s / kSide + 0.5) / kSide, (s % kSide + 0.5) / kSide});
+            const double inward = 1 - (s / kSide + 0.5) / kSide;
+            const Vec3d half = facets.sample(out, {1 - inward * inward, (s % kSide + 0.5) / kSide});
             const Vec3d in = reflect(out, half);
             if (in[2] <= 0) continue;
-            sum += schlick(reflectance, out.dot(half)) * facets.seenFromIn(out[2], in[2]);
+            sum +=
+                2 * inward * schlick(reflectance, out.dot(half)) * facets.seenFromIn(out[2], in[2]);
         }
         mCoat[i] = std::min(sum / (kSide * kSide), 1.0);
     }

@@ -91,7 +91,7 @@ class CoatReflectance {
     double groundOfAll(double cosOut) const { return mScale > 0 ? 1 - coat(cosOut) : 0; }
 
   private:
-    static constexpr int kSteps = 32;
+    static constexpr int kSteps = 64;
     std::array<double, kSteps + 1> mCoat{};  // by cosine
     double mScale = 1;                       // 1 / (1 - E')
 };

@@ -69,8 +69,8 @@ PathLight LightPaths::look(const Ray& ray, std::span<const ScreenCells::Span> sp
 
 Vec3d LightPaths::follow(const Path& path, Thread& thread) const {
     if (path.depth > mTransport.depth || path.weight < kLeastWeight) return Vec3d(0.0);
-    const auto found = mScene.nearest(path.ray, kFar, path.inside, thread.probes);
-    const double end = found ? found->hit.t : kFar;
+    const auto found = mScene.nearest(path.ray, path.reach, path.inside, thread.probes);
+    const double end = found ? found->hit.t : path.reach;
     const MediumLight medium =
         mMedium.along(path.ray, end, path.inside, thread.numbers, thread.probes);
     Vec3d light = found ? meet(path, *found, thread) : escape(path);
@@ -123,35 +123,36 @@ double LightPaths::beyond(const Meeting& at) const {
 
 // The matt ground, and what the coat shows of the lamps.
 Vec3d LightPaths::matt(const Path& path, const Meeting& at, Thread& thread) const {
-    Vec3d light = fromLamps(path, at, false, thread);
+    Vec3d light = fromLamps(path, at, std::nullopt, thread);
     if (mTransport.gather > 0) return light + gathered(path, at, thread);
     return light +
            at.color * at.object.coat().groundOfAll(at.out[2]) * mScene.environmentOn(at.normal);
 }
 
-Vec3d LightPaths::fromLamps(const Path& path, const Meeting& at, bool isGlass,
+Vec3d LightPaths::fromLamps(const Path& path, const Meeting& at, std::optional<double> glass,
                             Thread& thread) const {
     Vec3d light(0.0);
     for (int i = 0; i < mLamps.count(); ++i) {
         const LampSample lamp = mLamps.sample(i, at.place, thread.numbers.next2());
         const Vec3d in = at.frame.toLocal(lamp.direction);
         if (!(in[2] > 0)) continue;
-        Vec3d part = Vec3d(pi * coatTowards(at, in, isGlass));
-        if (!isGlass) part += at.color * at.object.coat().ground(at.out[2], in[2]);
+        Vec3d part = Vec3d(pi * coatTowards(at, in, glass));
+        if (!glass) part += at.color * at.object.coat().ground(at.out[2], in[2]);
         if (largest(part) > 0) light += in[2] * part * seenOfLamp(lamp, path, at, thread);
     }
     return light;
 }
 
 // What facets send of light that comes from one direction, per solid angle.
-double LightPaths::coatTowards(const Meeting& at, const Vec3d& in, bool isGlass) const {
+double LightPaths::coatTowards(const Meeting& at, const Vec3d& in,
+                               std::optional<double> glass) const {
     const Material& material = at.object.material();
     const Facets& facets = at.object.facets();
-    if (facets.areEven() || (!isGlass && !(material.reflectance > 0))) return 0;
+    if (facets.areEven() || (!glass && !(material.reflectance > 0))) return 0;
     const Vec3d half = (at.out + in).unit();
     const double cosine = at.out.dot(half);
     const double reflected =
-        isGlass ? fresnel(cosine, material.refractiveIndex) : schlick(material.reflectance, cosine);
+        glass ? fresnel(cosine, *glass) : schlick(material.reflectance, cosine);
     return reflected * facets.density(half) * facets.seenFromBoth(at.out[2], in[2]) /
            (4 * at.out[2] * in[2]);
 }
@@ -173,7 +174,7 @@ Vec3d LightPaths::seenOfLamp(const LampSample& lamp, const Path& path, const Mee
 // Light from around on the matt ground, as far as nothing is in the way.
 Vec3d LightPaths::gathered(const Path& path, const Meeting& at, Thread& thread) const {
     const bool goesOn = path.bounces < mTransport.bounces;
-    const double end = mTransport.gatherDistance > 0 && !goesOn ? mTransport.gatherDistance : kFar;
+    const double end = mTransport.gatherDistance > 0 ? mTransport.gatherDistance : kFar;
     // One direction is enough for each of the many that other surfaces look in.
     const int count = path.bounces == 0 ? mTransport.gather : 1;
     Vec3d sum(0.0);
@@ -187,6 +188,7 @@ Vec3d LightPaths::gathered(const Path& path, const Meeting& at, Thread& thread) 
             Path next{ray, path.inside};
             next.depth = path.depth;
             next.bounces = path.bounces + 1;
+            next.reach = end;
             next.weight = path.weight;
             next.isSharp = next.isStraight = false;
             light = follow(next, own);
@@ -209,6 +211,7 @@ LightPaths::Path LightPaths::mirror(const Path& path, const Meeting& at, const V
     Path next = path;
     next.ray = {at.place + beyond(at) * at.normal, at.frame.toWorld(reflect(at.out, half)).unit()};
     next.depth = path.depth + 1;
+    next.reach = kFar;
     next.weight = path.weight * weight;
     next.isSharp = path.isSharp && at.object.facets().areEven();
     next.isStraight = false;
@@ -241,7 +244,7 @@ Vec3d LightPaths::glass(const Path& path, const Meeting& at, bool leaving, Threa
     const double cosine = std::max(at.out.dot(half), kLeastCosine);
     const double reflected = fresnel(cosine, ratio);
 
-    Vec3d light = leaving ? Vec3d(0.0) : fromLamps(path, at, true, thread);
+    Vec3d light = leaving ? Vec3d(0.0) : fromLamps(path, at, ratio, thread);
     const bool both = path.depth < kSplits && path.bounces == 0;
     const bool chooseMirror = !both && thread.numbers.next() < reflected;
 
@@ -260,6 +263,7 @@ Vec3d LightPaths::glass(const Path& path, const Meeting& at, bool leaving, Threa
         next.ray = {at.place - beyond(at) * at.normal, at.frame.toWorld(through).unit()};
         next.inside = leaving ? path.inside.without(at.surface) : path.inside.with(at.surface);
         next.depth = path.depth + 1;
+        next.reach = kFar;
         next.weight = path.weight * (both ? weight : seen);
         next.isSharp = path.isSharp && facets.areEven();
         light += weight * follow(next, thread);

@@ -6,6 +6,7 @@
 
 #include <bandvox/render/picture_options.h>
 
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -33,8 +34,9 @@ class LightPaths {
     struct Path {
         Ray ray;
         InsideOf inside;
-        int depth = 0;           // how often it has been mirrored or refracted
-        int bounces = 0;         // and sent on by matt surfaces
+        int depth = 0;    // how often it has been mirrored or refracted
+        int bounces = 0;  // and sent on by matt surfaces
+        double reach = std::numeric_limits<double>::max();  // beyond, nothing is in its way
         double weight = 1;       // the largest part of its light that arrives
         bool isSharp = true;     // mirrored and refracted by even facets only
         bool isStraight = true;  // not mirrored: what it sees lies behind
@@ -61,11 +63,13 @@ class LightPaths {
     openvdb::Vec3d gathered(const Path& path, const Meeting& at, Thread& thread) const;
     openvdb::Vec3d mirrored(const Path& path, const Meeting& at, Thread& thread) const;
     openvdb::Vec3d glass(const Path& path, const Meeting& at, bool leaving, Thread& thread) const;
-    openvdb::Vec3d fromLamps(const Path& path, const Meeting& at, bool isGlass,
+    // `glass`: the refractive index behind its facets over that in front; none of a coat.
+    openvdb::Vec3d fromLamps(const Path& path, const Meeting& at, std::optional<double> glass,
                              Thread& thread) const;
     openvdb::Vec3d seenOfLamp(const LampSample& lamp, const Path& path, const Meeting& at,
                               Thread& thread) const;
-    double coatTowards(const Meeting& at, const openvdb::Vec3d& in, bool isGlass) const;
+    double coatTowards(const Meeting& at, const openvdb::Vec3d& in,
+                       std::optional<double> glass) const;
     Path mirror(const Path& path, const Meeting& at, const openvdb::Vec3d& half,
                 double weight) const;
     double beyond(const Meeting& at) const;

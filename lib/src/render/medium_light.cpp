@@ -22,17 +22,7 @@ constexpr double kLongSteps = 2;
 
 // The mean of the light from around.
 Vec3d meanOf(const Environment& environment) {
-    if (!environment.map) return environment.color;
-    // Of opposite normals the first order cancels out, and of six along the axes the second.
-    Vec3d sum(0.0);
-    for (int axis = 0; axis < 3; ++axis) {
-        for (const double side : {-1.0, 1.0}) {
-            Vec3d normal(0.0);
-            normal[axis] = side;
-            sum += environment.map->irradiance(normal);
-        }
-    }
-    return environment.color * sum / 6;
+    return environment.map ? environment.color * environment.map->mean() : environment.color;
 }
 
 }  // namespace

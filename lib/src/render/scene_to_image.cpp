@@ -91,8 +91,10 @@ class Painter {
             spans[i] = mCells[i]->span(pictureColumn, pictureRow);
             isEmpty = isEmpty && spans[i].empty();
         }
+        const Sight nothing{std::numeric_limits<double>::infinity(), Vec3d(0.0), Vec3d(0.0)};
         if (isEmpty) {
             setColor(mImage, pixel, Vec3d(0.0), 0, mOptions);
+            setSight(mImage, pixel, nothing);
             return 0;
         }
 
@@ -126,9 +128,7 @@ class Painter {
             const Vec3d position = ray.origin + mediumDepth / mediumWeight * ray.direction;
             nearest = Sight{mCamera.depth(position), position, Vec3d(0.0)};
         }
-        setSight(mImage, pixel,
-                 nearest.value_or(
-                     Sight{std::numeric_limits<double>::infinity(), Vec3d(0.0), Vec3d(0.0)}));
+        setSight(mImage, pixel, nearest.value_or(nothing));
         return hits;
     }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace bandvox {
@@ -13,17 +14,19 @@ namespace {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-// Values of the lattice act on places this many voxels beyond them, farther off only as ripples of
-// what is left near Nyquist.
-constexpr int kReach = 2;
+// Values of the lattice act on places this many voxels beyond them, farther off only as the ripples
+// of a spline, less than 0.004 of a step.
+constexpr int kReach = 3;
 
 // Densities below this stop no light to speak of.
 constexpr float kNoDensity = 1e-4F;
 
-// How far above the nodes the density between them rises: hardly where it is band-limited; by a
-// quarter of a step at most under the cubic spline.
-constexpr double kBandLimitedRise = 1.05;
-constexpr double kSplineRise = 1.25;
+// Interpolation by cubic splines multiplies values by 1.549 at most along each axis; those from 0
+// to 1 reach half of 1 + 1.549³.
+constexpr double kSplineRise = 2.36;
+
+// What interpolation to a tolerance adds.
+constexpr double kRiseMargin = 1.01;
 
 constexpr float kLargest = 1e30F;
 
@@ -39,7 +42,7 @@ template <typename Visitor>
 void forNeighbours(const openvdb::Coord& local, const Visitor& visit) {
     std::array<std::array<bool, 3>, 3> touches{};
     for (int axis = 0; axis < 3; ++axis) {
-        touches[axis] = {local[axis] < kReach, true, local[axis] >= kBlockSide - kReach};
+        touches[axis] = {local[axis] < kReach, true, local[axis] >= kSide - kReach};
     }
     for (int x = 0; x < 3; ++x) {
         if (!touches[0][x]) continue;
@@ -50,6 +53,24 @@ void forNeighbours(const openvdb::Coord& local, const Visitor& visit) {
             }
         }
     }
+}
+
+// How far above the nodes the density between them rises at most: as that of a point in the middle
+// between eight of them. For a Gaussian, g(x) / g(x - h) is what a sum of such points obeys as
+// well, as long as none is negative; for others it is what solids do not exceed.
+double riseAboveNodes(const std::optional<ExponentialFilter>& filter) {
+    if (!filter) return kSplineRise;
+    constexpr int kFrequencies = 512;
+    const double farthest = 0.5 * std::sqrt(3.0);
+    double there = 0, atNodes = 0;
+    for (int i = 0; i < kFrequencies; ++i) {
+        const double k = 0.5 * (i + 0.5) / kFrequencies;
+        const double turn = 2 * std::numbers::pi * k * farthest;
+        const double weight = (*filter)(k)*k * k;
+        there += weight;
+        atNodes += weight * std::sin(turn) / turn;
+    }
+    return kRiseMargin * there / atNodes;
 }
 
 LeafMaxima findMaxima(const Leaf& leaf) {
@@ -73,10 +94,17 @@ openvdb::Coord neighbourOf(const openvdb::Coord& block, int i) {
 
 }  // namespace
 
-VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid, bool isBandLimited) : mBlocks(0) {
-    const auto rise = static_cast<float>(isBandLimited ? kBandLimitedRise : kSplineRise);
+VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid,
+                           const std::optional<ExponentialFilter>& filter)
+    : mBlocks(0) {
+    const auto rise = static_cast<float>(riseAboveNodes(filter));
 
-    // Mark the tiles; the borders of each matter to the blocks around it.
+    // Mark the tiles first, then around each of them: its borders matter to tiles beside it too.
+    struct Tile {
+        openvdb::CoordBBox blocks;
+        float most;
+    };
+    std::vector<Tile> tiles;
     auto tile = grid.tree().cbeginValueAll();
     tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
@@ -84,13 +112,16 @@ VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid, bool isBandLimited) :
         mFinite = mFinite && std::abs(value) <= kLargest;
         if (!(value > kNoDensity)) continue;
         openvdb::CoordBBox blocks = tile.getBoundingBox();
-        blocks.min() >>= kBlockLog2;
-        blocks.max() >>= kBlockLog2;
+        blocks.min() >>= kLog2;
+        blocks.max() >>= kLog2;
         mBlocks.sparseFill(blocks, rise * value, true);
+        tiles.push_back({blocks, rise * value});
+    }
+    for (const auto& [blocks, most] : tiles) {
         openvdb::CoordBBox around = blocks;
         around.expand(1);
         for (auto block = around.begin(); block; ++block) {
-            if (!blocks.isInside(*block)) raise(*block, rise * value);
+            if (!blocks.isInside(*block)) raise(*block, most);
         }
     }
 
@@ -100,7 +131,7 @@ VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid, bool isBandLimited) :
     const std::vector<LeafMaxima> found = examineLeaves(leaves, findMaxima);
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         mFinite = mFinite && found[i].finite;
-        const openvdb::Coord block = leaves[i]->origin() >> kBlockLog2;
+        const openvdb::Coord block = leaves[i]->origin() >> kLog2;
         for (int n = 0; n < 27; ++n) {
             if (found[i].most[n] > kNoDensity)
                 raise(neighbourOf(block, n), rise * found[i].most[n]);

@@ -3,8 +3,11 @@
 #include "render/block_walk.h"
 
 #include <bandvox/render/camera.h>
+#include <bandvox/spectral/exponential_filter.h>
 
 #include <openvdb/openvdb.h>
+
+#include <optional>
 
 namespace bandvox {
 
@@ -12,9 +15,9 @@ namespace bandvox {
 /// of 8³ voxels. All lengths in voxels, index coordinates.
 class VolumeBlocks {
   public:
-    /// `isBandLimited`: the density between the nodes is little higher than at them. The background
-    /// of `grid` is 0.
-    VolumeBlocks(const openvdb::FloatGrid& grid, bool isBandLimited);
+    /// `filter`: what the lattice was filtered with; without, it is read by the cubic spline. The
+    /// background of `grid` is 0.
+    VolumeBlocks(const openvdb::FloatGrid& grid, const std::optional<ExponentialFilter>& filter);
 
     bool empty() const { return mBlocks.empty(); }
     /// False if a value of the lattice is not finite, or so large that sums of them are not.
@@ -24,11 +27,14 @@ class VolumeBlocks {
     /// 0 ≤ t ≤ `end`, in order; stops when it returns true.
     template <typename Visitor>
     void walk(const Ray& ray, double end, const Visitor& visit) const {
-        walkBlocks(mBlocks, mBox, ray, end,
+        walkBlocks(mBlocks, mBox, inBlocks(ray, kSide, end),
                    [&](double t0, double t1, float most) { return visit(t0, t1, double(most)); });
     }
 
   private:
+    static constexpr int kLog2 = 3;
+    static constexpr int kSide = 1 << kLog2;  // voxels
+
     void raise(const openvdb::Coord& block, float most);
 
     openvdb::FloatTree mBlocks;  // one voxel for each block

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace bandvox {
 
@@ -49,7 +50,9 @@ VolumeObject::VolumeObject(const SceneObject& object, const PictureOptions& opti
     }
     mExtinction = chooseExtinction(*mGrid, mMedium);
     const auto metadata = densityMetadata(*mGrid);
-    mBlocks = std::make_unique<VolumeBlocks>(*mGrid, metadata.has_value());
+    std::optional<ExponentialFilter> filter;
+    if (metadata) filter = ExponentialFilter{metadata->order, metadata->cutoff};
+    mBlocks = std::make_unique<VolumeBlocks>(*mGrid, filter);
     if (!mBlocks->finite()) failNotFinite(*mGrid);
     mDensity = readLattice(mGrid, metadata, options);
     if (object.colors) mColors.emplace(object.colors);

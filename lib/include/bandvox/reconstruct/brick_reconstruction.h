@@ -13,7 +13,7 @@ namespace bandvox {
 /// How a lattice is read as a continuous density.
 struct BrickReconstructionOptions {
     ExponentialFilter filter;             ///< what the lattice was filtered with
-    double tolerance = 1e-4;              ///< error allowed: of the value in density, of the
+    double tolerance = 1.5e-5;            ///< error allowed: of the value in density, of the
                                           ///< gradient relative to a flat face's; 1e-6 to 0.1
     std::size_t cacheBytes = 512u << 20;  ///< memory for bricks; room for 16 is always taken
 };

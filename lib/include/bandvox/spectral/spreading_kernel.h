@@ -68,8 +68,8 @@ class SpreadingKernel {
 
     int mWidth;
     double mBeta;
-    double mScale;                               // makes ψ̂(0) = 1
-    int mDegree = 0;                             // of the polynomials
+    double mScale;                                    // makes ψ̂(0) = 1
+    int mDegree = 0;                                  // of the polynomials
     std::array<std::vector<float>, 3> mCoefficients;  // by order: [degree + 1][kPaddedWidth]
 };
 

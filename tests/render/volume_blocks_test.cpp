@@ -1,0 +1,132 @@
+#include "render/volume_blocks.h"
+
+#include "render/ball_scene.h"
+
+#include <bandvox/reconstruct/brick_reconstruction.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace bandvox {
+namespace {
+
+using openvdb::Coord;
+using openvdb::Vec3d;
+
+// The bound of the block that a place is in; 0 if nothing is there.
+double boundAt(const VolumeBlocks& blocks, const Vec3d& place) {
+    double bound = 0;
+    // A ray that hardly moves.
+    blocks.walk({place, Vec3d(1, 0, 0)}, 1e-9, [&](double, double, double most) {
+        bound = most;
+        return true;
+    });
+    return bound;
+}
+
+// Compares the bounds to the density at random places. Returns how close it comes.
+double compare(const openvdb::FloatGrid::ConstPtr& grid,
+               const std::optional<ExponentialFilter>& filter, double low, double high) {
+    const VolumeBlocks blocks(*grid, filter);
+    EXPECT_TRUE(blocks.finite());
+    const auto reconstruction =
+        filter ? makeBrickReconstruction(grid, {*filter, 1e-4}) : makeSplineReconstruction(grid);
+    const auto probe = reconstruction->probe();
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> uniform(low, high);
+    double closest = 0;
+    for (int i = 0; i < 40000; ++i) {
+        Vec3d place(uniform(random), uniform(random), uniform(random));
+        // Half of them in the middle between nodes.
+        if (i % 2)
+            place = Vec3d(std::floor(place[0]), std::floor(place[1]), std::floor(place[2])) + 0.5;
+        const double density = probe->value(place), bound = boundAt(blocks, place);
+        // What a spline adds far from its nodes, or what was cut off of the band-limited lattice.
+        EXPECT_LE(density, bound + (filter || bound > 0 ? 3e-4 : 4e-3)) << place;
+        if (bound > 0.05) closest = std::max(closest, density / bound);
+        if (testing::Test::HasFailure()) break;
+    }
+    return closest;
+}
+
+TEST(VolumeBlocks, BoundTheBandLimitedDensity) {
+    // Points of any size, filtered: the sharpest densities that the filter leaves.
+    const double sigma = 1 / (std::numbers::sqrt2 * std::numbers::pi * ExponentialFilter().cutoff);
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (const int points : {1, 8, 60}) {
+        std::vector<std::pair<Vec3d, double>> all;
+        for (int i = 0; i < points; ++i) {
+            const Vec3d place(40 * uniform(random), 40 * uniform(random), 40 * uniform(random));
+            all.emplace_back(place, uniform(random));
+        }
+        all[0] = {Vec3d(20.5, 16.5, 15.5), 1};
+        const auto grid = render_test::makeGrid({Coord(-8), Coord(48)}, {}, [&](const Vec3d& x) {
+            double sum = 0;
+            for (const auto& [place, size] : all) {
+                sum += 0.5 * size * std::exp(-0.5 * (x - place).lengthSqr() / (sigma * sigma));
+            }
+            return sum;
+        });
+        const double closest = compare(grid, ExponentialFilter(), -6, 46);
+        EXPECT_GT(closest, 0.9);  // nor are they far above
+    }
+    compare(render_test::ballGrid(), ExponentialFilter(), -10, 40);
+}
+
+TEST(VolumeBlocks, BoundTheSplineOfRandomValues) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (const double filled : {1.0, 0.5, 0.02}) {
+        for (const bool binary : {false, true}) {
+            auto grid = openvdb::FloatGrid::create(0);
+            auto accessor = grid->getAccessor();
+            const openvdb::CoordBBox box(Coord(-3), Coord(40));
+            for (auto voxel = box.begin(); voxel; ++voxel) {
+                if (uniform(random) > filled) continue;
+                accessor.setValue(*voxel, binary ? 1.0F : static_cast<float>(uniform(random)));
+            }
+            compare(grid, std::nullopt, -6, 44);
+        }
+    }
+}
+
+TEST(VolumeBlocks, BoundTheSplineAroundTwoVoxelsEachWay) {
+    // Between eight equal nodes among nothing, it rises to (2 · 0.6)³.
+    auto grid = openvdb::FloatGrid::create(0);
+    grid->fill({Coord(7), Coord(8)}, 1.0F, true);
+    const VolumeBlocks blocks(*grid, std::nullopt);
+    const auto spline = makeSplineReconstruction(grid);
+    EXPECT_GT(spline->value(Vec3d(7.5)), 1.7);
+    EXPECT_GE(boundAt(blocks, Vec3d(7.5)), spline->value(Vec3d(7.5)));
+}
+
+TEST(VolumeBlocks, BoundWhatIsBetweenTiles) {
+    for (const bool reversed : {false, true}) {
+        auto grid = openvdb::FloatGrid::create(0);
+        grid->tree().addTile(1, Coord(reversed ? 8 : 0, 0, 0), 1.0F, true);
+        grid->tree().addTile(1, Coord(reversed ? 0 : 8, 0, 0), 0.1F, true);
+        grid->tree().addTile(2, Coord(128, 0, 0), 0.2F, true);
+        compare(grid, std::nullopt, -4, 20);
+        compare(grid, std::nullopt, 100, 140);
+    }
+}
+
+TEST(VolumeBlocks, LeaveOutWhatIsEmpty) {
+    EXPECT_TRUE(VolumeBlocks(*openvdb::FloatGrid::create(0), std::nullopt).empty());
+    const VolumeBlocks blocks(*render_test::ballGrid(), ExponentialFilter());
+    EXPECT_FALSE(blocks.empty());
+    EXPECT_EQ(boundAt(blocks, render_test::kCenter + Vec3d(40, 0, 0)), 0);
+    auto broken = openvdb::FloatGrid::create(0);
+    broken->tree().setValue(Coord(0), std::nanf(""));
+    EXPECT_FALSE(VolumeBlocks(*broken, std::nullopt).finite());
+    auto huge = openvdb::FloatGrid::create(0);
+    huge->tree().addTile(1, Coord(0), 1e35F, true);
+    EXPECT_FALSE(VolumeBlocks(*huge, std::nullopt).finite());
+}
+
+}  // namespace
+}  // namespace bandvox
