@@ -42,7 +42,7 @@ template <typename Visitor>
 void forNeighbours(const openvdb::Coord& local, const Visitor& visit) {
     std::array<std::array<bool, 3>, 3> touches{};
     for (int axis = 0; axis < 3; ++axis) {
-        touches[axis] = {local[axis] < kReach, true, local[axis] >= kSide - kReach};
+        touches[axis] = {local[axis] < kReach, true, local[axis] >= VolumeBlocks::kSide - kReach};
     }
     for (int x = 0; x < 3; ++x) {
         if (!touches[0][x]) continue;

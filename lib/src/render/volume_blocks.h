@@ -15,6 +15,9 @@ namespace bandvox {
 /// of 8³ voxels. All lengths in voxels, index coordinates.
 class VolumeBlocks {
   public:
+    static constexpr int kLog2 = 3;
+    static constexpr int kSide = 1 << kLog2;  ///< of a block, voxels
+
     /// `filter`: what the lattice was filtered with; without, it is read by the cubic spline. The
     /// background of `grid` is 0.
     VolumeBlocks(const openvdb::FloatGrid& grid, const std::optional<ExponentialFilter>& filter);
@@ -32,9 +35,6 @@ class VolumeBlocks {
     }
 
   private:
-    static constexpr int kLog2 = 3;
-    static constexpr int kSide = 1 << kLog2;  // voxels
-
     void raise(const openvdb::Coord& block, float most);
 
     openvdb::FloatTree mBlocks;  // one voxel for each block
