@@ -26,8 +26,9 @@ ScreenCells::ScreenCells(const Camera& camera, int width, int height, double mar
       mDown(cellsAlong(height, kSide)),
       mCells(static_cast<std::size_t>(mAcross) * mDown) {
     blocks.forEachBlock([&](const openvdb::CoordBBox& box) {
-        const openvdb::Vec3d low = box.min().asVec3d() - openvdb::Vec3d(0.5);
-        const openvdb::Vec3d high = box.max().asVec3d() + openvdb::Vec3d(0.5);
+        // A block holds the places from its first voxel on up to the next block's.
+        const openvdb::Vec3d low = box.min().asVec3d();
+        const openvdb::Vec3d high = box.max().offsetBy(1).asVec3d();
         const openvdb::Vec3d middle = transform.indexToWorld(0.5 * (low + high));
         // The farthest of the corners, of which four are as far as their opposites.
         double radius = 0;
