@@ -7,6 +7,7 @@
 
 namespace bandvox {
 
+using openvdb::Vec2d;
 using openvdb::Vec3d;
 using std::numbers::pi;
 
@@ -171,6 +172,20 @@ Vec3d LightPaths::seenOfLamp(const LampSample& lamp, const Path& path, const Mee
     return light;
 }
 
+// A direction to look in, drawn by the cosine, or half of the time by the brightness of what is
+// around; weighted by the balance heuristic of E. Veach (1997).
+LightPaths::Direction LightPaths::gatherDirection(const Meeting& at, SampleStream& numbers) const {
+    const auto& map = mScene.environment().map;
+    if (!map) return {cosineDirection(numbers.next2()), 1};
+    const bool byCosine = numbers.next() < 0.5;
+    const Vec2d u = numbers.next2();
+    const Vec3d in =
+        byCosine ? cosineDirection(u) : at.frame.toLocal(map->sample(u).direction);
+    if (!(in[2] > 0)) return {in, 0};
+    const double cosine = in[2] / pi;
+    return {in, cosine / (0.5 * cosine + 0.5 * map->density(at.frame.toWorld(in)))};
+}
+
 // Light from around on the matt ground, as far as nothing is in the way.
 Vec3d LightPaths::gathered(const Path& path, const Meeting& at, Thread& thread) const {
     const bool goesOn = path.bounces < mTransport.bounces;
@@ -181,7 +196,8 @@ Vec3d LightPaths::gathered(const Path& path, const Meeting& at, Thread& thread) 
     for (int i = 0; i < count; ++i) {
         SampleStream numbers = thread.numbers.branch(i);
         Thread own{numbers, thread.probes};
-        const Vec3d in = cosineDirection(numbers.next2());
+        const auto [in, weight] = gatherDirection(at, numbers);
+        if (!(weight > 0)) continue;
         const Ray ray{at.place + beyond(at) * at.normal, at.frame.toWorld(in)};
         Vec3d light(0.0);
         if (goesOn) {
@@ -199,7 +215,7 @@ Vec3d LightPaths::gathered(const Path& path, const Meeting& at, Thread& thread) 
             }
             if (light.lengthSqr() > 0) light *= mMedium.left(ray, end, numbers, own.probes);
         }
-        sum += at.object.coat().ground(at.out[2], in[2]) * light;
+        sum += weight * at.object.coat().ground(at.out[2], in[2]) * light;
     }
     // Take other numbers from here on.
     thread.numbers = thread.numbers.branch(count);

@@ -51,6 +51,11 @@ class LightPaths {
         openvdb::Vec3d out;  // local, against the ray
         openvdb::Vec3d color;
     };
+    // A direction to look in for light from around, local, and how much it counts.
+    struct Direction {
+        openvdb::Vec3d in;
+        double weight;
+    };
     struct Thread {
         SampleStream& numbers;
         SceneProbes& probes;
@@ -60,6 +65,7 @@ class LightPaths {
     openvdb::Vec3d meet(const Path& path, const NearestSurface& found, Thread& thread) const;
     openvdb::Vec3d escape(const Path& path) const;
     openvdb::Vec3d matt(const Path& path, const Meeting& at, Thread& thread) const;
+    Direction gatherDirection(const Meeting& at, SampleStream& numbers) const;
     openvdb::Vec3d gathered(const Path& path, const Meeting& at, Thread& thread) const;
     openvdb::Vec3d mirrored(const Path& path, const Meeting& at, Thread& thread) const;
     openvdb::Vec3d glass(const Path& path, const Meeting& at, bool leaving, Thread& thread) const;
