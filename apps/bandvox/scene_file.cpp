@@ -67,7 +67,9 @@ std::vector<OptionValues> SceneFile::list(const std::string& list,
     const nlohmann::json& groups = mJson->at(list);
     if (!groups.is_array()) fail(list + " is no list; expected [ { ... }, ... ]");
     for (const nlohmann::json& settings : groups) {
-        all.push_back(read(settings, list + "[" + std::to_string(all.size()) + "]", names));
+        std::string where = list;
+        where += "[" + std::to_string(all.size()) + "]";
+        all.push_back(read(settings, where, names));
     }
     return all;
 }
@@ -75,7 +77,9 @@ std::vector<OptionValues> SceneFile::list(const std::string& list,
 OptionValues SceneFile::read(const nlohmann::json& settings, const std::string& where,
                              const std::vector<std::string>& names) const {
     if (!settings.is_object()) fail(where + " holds no settings; expected { ... }");
-    OptionValues values("'" + mPath.string() + "': " + where + ".", ErrorKind::Input);
+    std::string title = "'" + mPath.string();
+    title += "': " + where + ".";
+    OptionValues values(title, ErrorKind::Input);
     for (const auto& [name, value] : settings.items()) {
         if (std::find(names.begin(), names.end(), name) == names.end()) {
             const std::string nearest = nearestName(name, names);

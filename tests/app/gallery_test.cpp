@@ -37,7 +37,7 @@ std::string reduced(std::string text) {
     text = std::regex_replace(text, std::regex("--res [0-9]+x[0-9]+"), "--res 24x18");
     text = std::regex_replace(text, std::regex("--samples [0-9]+"), "--samples 1");
     text = std::regex_replace(text, std::regex(" --resolution [0-9]+"), "");
-    text = std::regex_replace(text, std::regex("(bandvox convert [^\n]*)"), "$1 --resolution 24");
+    text = std::regex_replace(text, std::regex("(bandvox convert [^\n]*)"), "$1 --resolution 48");
     text =
         std::regex_replace(text, std::regex("\"res\": \\[[0-9]+, [0-9]+\\]"), "\"res\": [24, 18]");
     return std::regex_replace(text, std::regex("\"samples\": [0-9]+"), "\"samples\": 1");

@@ -1,5 +1,7 @@
 #include "render/environment.h"
 
+#include "render/scene_pieces.h"
+
 #include <bandvox/core/error.h>
 #include <bandvox/render/image.h>
 
@@ -10,12 +12,14 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <random>
 
 namespace bandvox {
 namespace {
 
+using namespace render_test;
 using openvdb::Vec2d;
 using openvdb::Vec3d;
 using std::numbers::pi;
@@ -120,6 +124,29 @@ TEST(EnvironmentMap, LightsMattSurfacesAsQuadratureDoes) {
             });
             EXPECT_LT((around.irradiance(normal) - expected).length(), 3e-3);
         }
+    }
+}
+
+TEST(EnvironmentMap, IsGatheredAsQuadratureHasIt) {
+    // A small bright window, which directions by the cosine alone would seldom find.
+    const auto window = [](const Vec3d& d) {
+        return d.dot(Vec3d(0.48, 0.36, 0.8)) > 0.99 ? Vec3d(60, 40, 20) : Vec3d(0.2, 0.3, 0.4);
+    };
+    const auto map = std::make_shared<const EnvironmentMap>(mapOf(128, 64, window), 0, "test");
+    const Vec3d expected = overSphere(
+        400, [&](const Vec3d& d) { return map->radiance(d) * std::max(d[2], 0.0) / pi; });
+    Material white;
+    white.color = Vec3d(1.0);
+    Scene scene;
+    scene.objects = {surfaceOf(ballGrid(), white)};
+    scene.environment = {Vec3d(1.0), map, false};
+    PictureOptions options = pictureFrom({0, 0, 1}, kCenter, 1, 0.5);
+    options.samples = 2048;
+    options.transport.gather = 16;
+    for (const int bounces : {0, 1}) {
+        options.transport.bounces = bounces;
+        const Vec3d found = colorAt(sceneToImage(scene, options).image, 0, 0);
+        EXPECT_LT((found - expected).length(), 0.025 * expected.length()) << bounces << found;
     }
 }
 

@@ -113,7 +113,9 @@ template <int kLanes>
                                                          const SpreadingKernel& kernel,
                                                          const openvdb::Vec3d& local) {
     const auto place = placeWeights<kLanes, 3>(brick, kernel, local);
-    const auto& [x, y, z] = place.axes;
+    const auto& x = place.axes[0];
+    const auto& y = place.axes[1];
+    const auto& z = place.axes[2];
     // Sums over x and y by the orders of their derivatives.
     Lanes<kLanes> sum[3][3] = {}, row;
     for (int i = 0; i < kernel.width(); ++i) {

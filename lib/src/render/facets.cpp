@@ -91,8 +91,9 @@ CoatReflectance::CoatReflectance(const Facets& facets, double reflectance) {
         const Vec3d out(std::sqrt(1 - cosine * cosine), 0, cosine);
         double sum = 0;
         for (int s = 0; s < kSide * kSide; ++s) {
-            const double inward = 1 - (s / kSide + 0.5) / kSide;
-            const Vec3d half = facets.sample(out, {1 - inward * inward, (s % kSide + 0.5) / kSide});
+            const int first = s / kSide, second = s % kSide;
+            const double inward = 1 - (first + 0.5) / kSide;
+            const Vec3d half = facets.sample(out, {1 - inward * inward, (second + 0.5) / kSide});
             const Vec3d in = reflect(out, half);
             if (in[2] <= 0) continue;
             sum +=

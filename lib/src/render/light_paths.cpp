@@ -179,8 +179,7 @@ LightPaths::Direction LightPaths::gatherDirection(const Meeting& at, SampleStrea
     if (!map) return {cosineDirection(numbers.next2()), 1};
     const bool byCosine = numbers.next() < 0.5;
     const Vec2d u = numbers.next2();
-    const Vec3d in =
-        byCosine ? cosineDirection(u) : at.frame.toLocal(map->sample(u).direction);
+    const Vec3d in = byCosine ? cosineDirection(u) : at.frame.toLocal(map->sample(u).direction);
     if (!(in[2] > 0)) return {in, 0};
     const double cosine = in[2] / pi;
     return {in, cosine / (0.5 * cosine + 0.5 * map->density(at.frame.toWorld(in)))};

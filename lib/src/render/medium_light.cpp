@@ -16,8 +16,8 @@ namespace {
 // What is left of light that nobody sees any more.
 constexpr double kNothingLeft = 1e-4;
 
-// Steps towards lamps, along which only the sum of the density counts: two voxels see all below
-// their frequency, half a cycle per voxel.
+// Steps towards lamps, along which only the sum of the density counts: two voxels see all of a
+// band-limited one but what is near their own frequency, half a cycle per voxel.
 constexpr double kLongSteps = 2;
 
 // The mean of the light from around.
@@ -39,9 +39,12 @@ MediumTransport::MediumTransport(const PreparedScene& scene, const Lamps& lamps,
       mMethod(options.volumes.method),
       mStep(std::numeric_limits<double>::max()),
       mAround(meanOf(scene.environment())) {
+    bool areBandLimited = true;
     for (const auto& volume : scene.volumes()) {
         mStep = std::min(mStep, options.volumes.step * volume->voxel());
+        areBandLimited = areBandLimited && volume->isBandLimited();
     }
+    mLongStep = areBandLimited ? kLongSteps * mStep : mStep;
 }
 
 MediumLight MediumTransport::along(const Ray& ray, double end, const InsideOf& inside,
@@ -193,7 +196,7 @@ double MediumTransport::left(const Ray& ray, double end, SampleStream& numbers,
     if (mMethod == VolumeOptions::Method::Steps) {
         double depth = 0;
         const double deepest = -std::log(kNothingLeft);
-        forEachStep(ray, end, kLongSteps * mStep, [&](double t, double length) {
+        forEachStep(ray, end, mLongStep, [&](double t, double length) {
             const Vec3d place = ray.origin + t * ray.direction;
             for (std::size_t i = 0; i < mScene.volumes().size(); ++i) {
                 depth += length * mScene.volumes()[i]->extinctionAt(place, probes.volumes[i]);

@@ -46,6 +46,7 @@ class MediumTransport {
     const TransportOptions mTransport;
     VolumeOptions::Method mMethod;
     double mStep = 0;                 // world units
+    double mLongStep = 0;             // the same, where only the sum of the density counts
     openvdb::Vec3d mAround{0, 0, 0};  // the mean of the light from around
 };
 

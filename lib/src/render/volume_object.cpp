@@ -50,6 +50,7 @@ VolumeObject::VolumeObject(const SceneObject& object, const PictureOptions& opti
     }
     mExtinction = chooseExtinction(*mGrid, mMedium);
     const auto metadata = densityMetadata(*mGrid);
+    mIsBandLimited = metadata.has_value();
     std::optional<ExponentialFilter> filter;
     if (metadata) filter = ExponentialFilter{metadata->order, metadata->cutoff};
     mBlocks = std::make_unique<VolumeBlocks>(*mGrid, filter);

@@ -29,6 +29,8 @@ class VolumeObject {
     const openvdb::FloatGrid& grid() const { return *mGrid; }
     /// The shortest side of a voxel.
     double voxel() const { return mVoxel; }
+    /// True of a density of this library: it holds nothing near half a cycle per voxel.
+    bool isBandLimited() const { return mIsBandLimited; }
     double anisotropy() const { return mMedium.anisotropy; }
     bool glows() const;
 
@@ -60,6 +62,7 @@ class VolumeObject {
     openvdb::Mat4d mToIndex;
     double mVoxel;
     double mExtinction;
+    bool mIsBandLimited;
     std::unique_ptr<VolumeBlocks> mBlocks;
     std::unique_ptr<Reconstruction> mDensity;
     std::unique_ptr<Reconstruction> mTemperature;
