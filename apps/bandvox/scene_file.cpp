@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <fstream>
 #include <optional>
+#include <sstream>
 
 namespace bandvox::app {
 
@@ -83,9 +84,14 @@ OptionValues SceneFile::read(const nlohmann::json& settings, const std::string& 
     for (const auto& [name, value] : settings.items()) {
         if (std::find(names.begin(), names.end(), name) == names.end()) {
             const std::string nearest = nearestName(name, names);
-            fail(where + " has '" + name + "'; " +
-                 (nearest.empty() ? "expected " + joined(names, ", ")
-                                  : "did you mean '" + nearest + "'?"));
+            std::ostringstream why;
+            why << where << " has '" << name << "'; ";
+            if (nearest.empty()) {
+                why << "expected " << joined(names, ", ");
+            } else {
+                why << "did you mean '" << nearest << "'?";
+            }
+            fail(why.str());
         }
         if (value.is_boolean()) {
             if (value.get<bool>()) values.set(name, "");
@@ -93,8 +99,9 @@ OptionValues SceneFile::read(const nlohmann::json& settings, const std::string& 
         }
         const auto text = textOf(name, value);
         if (!text) {
-            fail(where + "." + name +
-                 " is neither text, a number, a list of numbers, true nor false");
+            std::string setting = where;
+            setting += "." + name;
+            fail(setting + " is neither text, a number, a list of numbers, true nor false");
         }
         values.set(name, *text);
     }
