@@ -55,6 +55,9 @@ void requireDistinctFiles(const CommandLine& line) {
     for (std::size_t i = 0; i < line.positionals().size(); ++i) {
         files.emplace_back(table[std::min(i, table.size() - 1)].name, line.positional(i));
     }
+    for (const std::string option : {"environment", "camera-file"}) {
+        if (const auto given = line.text(option)) files.emplace_back("--" + option, *given);
+    }
     for (const std::string option : {"output", "stats"}) {
         const auto given = line.text(option);
         if (!given) continue;

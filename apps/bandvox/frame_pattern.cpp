@@ -2,7 +2,8 @@
 
 #include <cctype>
 #include <charconv>
-#include <cstdio>
+#include <filesystem>
+#include <system_error>
 
 namespace bandvox::app {
 namespace {
@@ -69,12 +70,13 @@ std::optional<FrameRange> parseFrames(const std::string& text) {
 }
 
 bool hasFrame(const std::string& name) {
-    return findPlace(name).has_value();
+    std::error_code ignored;
+    return findPlace(name).has_value() && !std::filesystem::exists(name, ignored);
 }
 
 std::string withFrame(const std::string& name, int frame) {
+    if (!hasFrame(name)) return name;
     const auto place = findPlace(name);
-    if (!place) return name;
     std::string number = std::to_string(frame);
     if (static_cast<int>(number.size()) < place->digits) {
         number.insert(0, static_cast<std::size_t>(place->digits) - number.size(), '0');

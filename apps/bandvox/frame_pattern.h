@@ -16,7 +16,8 @@ struct FrameRange {
 /// Reads "7", "1-100" or "1-100x2"; nothing if it is none of these.
 std::optional<FrameRange> parseFrames(const std::string& text);
 
-/// True if a name has a place for the number of a frame: a run of '#', or "%d" or "%04d".
+/// True if a name has a place for the number of a frame: a run of '#', or "%d" or "%04d". There is
+/// no file of that very name.
 bool hasFrame(const std::string& name);
 
 /// The name with a frame's number in that place, with zeros in front as the pattern has it. Names

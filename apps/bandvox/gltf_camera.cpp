@@ -5,6 +5,7 @@
 #include <bandvox/core/error.h>
 
 #include <nlohmann/json.hpp>
+#include <openvdb/Exceptions.h>
 #include <openvdb/math/Mat4.h>
 #include <openvdb/math/Quat.h>
 
@@ -15,6 +16,9 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
 
 namespace bandvox::app {
 namespace {
@@ -86,7 +90,7 @@ class CameraSearch {
     CameraSearch(const nlohmann::json& scene, std::string name)
         : mScene(scene), mName(std::move(name)) {}
 
-    std::optional<PlacedCamera> find() const {
+    std::optional<PlacedCamera> find() {
         // Nodes that no other has are where trees begin.
         const nlohmann::json nodes = mScene.value("nodes", nlohmann::json::array());
         std::vector<bool> isChild(nodes.size(), false);
@@ -95,6 +99,7 @@ class CameraSearch {
                 isChild.at(child.get<std::size_t>()) = true;
             }
         }
+        mVisited.assign(nodes.size(), false);
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             if (isChild[i]) continue;
             if (auto found = findUnder(i, Mat4d::identity(), 0)) return found;
@@ -103,8 +108,10 @@ class CameraSearch {
     }
 
   private:
-    std::optional<PlacedCamera> findUnder(std::size_t index, const Mat4d& above, int depth) const {
-        if (depth > kDeepest) return std::nullopt;
+    std::optional<PlacedCamera> findUnder(std::size_t index, const Mat4d& above, int depth) {
+        // A node has one parent; what says otherwise is not followed twice.
+        if (depth > kDeepest || mVisited.at(index)) return std::nullopt;
+        mVisited[index] = true;
         const nlohmann::json& node = mScene.at("nodes").at(index);
         const Mat4d transform = above * transformOf(node);
         if (node.contains("camera")) {
@@ -125,6 +132,7 @@ class CameraSearch {
 
     const nlohmann::json& mScene;
     std::string mName;
+    std::vector<bool> mVisited;
 };
 
 CameraOptions optionsOf(const PlacedCamera& placed, double aspect) {
@@ -167,6 +175,8 @@ CameraOptions readGltfCamera(const std::string& file, double aspect) {
         return optionsOf(*found, aspect);
     } catch (const nlohmann::json::exception& error) {
         fail(path, std::string("is no glTF file whose cameras can be read (") + error.what() + ")");
+    } catch (const openvdb::Exception&) {
+        fail(path, "has a camera that looks nowhere: its node makes all lengths 0");
     } catch (const std::out_of_range&) {
         fail(path, "is no glTF file whose cameras can be read (a node that is not there)");
     }

@@ -33,6 +33,8 @@ void installSignalHandlers() {
         if (inherited.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
     }
     std::signal(SIGPIPE, SIG_IGN);
+    // A file that may not grow any more is an error like that of a full disk.
+    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 int interruptSignal() {

@@ -15,6 +15,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -43,12 +45,14 @@ void requirePlain(const CommandLine& line, const RenderRequest& request) {
     if (!isPlain) line.fail("shading", "spectral for anything but one surface under one lamp");
 }
 
+bool hasFrames(const SceneRequest& scene) {
+    return std::any_of(scene.objects.begin(), scene.objects.end(),
+                       [](const ObjectRequest& object) { return hasFrame(object.file); });
+}
+
 void readFrames(const CommandLine& line, RenderRequest& request) {
     request.turns = line.wholeNumber("turntable", 1, kMostTurns, 0);
-    bool hasInputFrames = false;
-    for (const ObjectRequest& object : request.scene.objects) {
-        hasInputFrames = hasInputFrames || hasFrame(object.file);
-    }
+    const bool hasInputFrames = hasFrames(request.scene);
     if (const auto text = line.text("frames")) {
         const auto range = parseFrames(*text);
         if (!range) line.fail("frames", "frames as in 7, 1-100 or 1-100x2");
@@ -67,8 +71,9 @@ void readFrames(const CommandLine& line, RenderRequest& request) {
                                           "'; expected a place for the number of a frame in it, "
                                           "as in name.####.png");
     }
-    if (request.turns > 0 && !request.frames.empty() && request.frames.back() > request.turns) {
-        line.fail("frames", "none beyond the " + std::to_string(request.turns) +
+    if (request.turns > 0 &&
+        (request.frames.front() < 1 || request.frames.back() > request.turns)) {
+        line.fail("frames", "from 1 to no more than the " + std::to_string(request.turns) +
                                 " pictures of the turntable");
     }
 }
@@ -109,12 +114,20 @@ struct Totals {
 };
 
 Image drawFrame(CommandRun& run, const RenderRequest& request, const Scene& scene,
-                const PictureOptions& picture, const std::filesystem::path& output,
-                Totals& totals) {
+                const PictureOptions& picture, const AtomicFile& output, Totals& totals) {
     PictureOptions options = picture;
     if (request.previews) {
+        if (output.inPlace()) {
+            throw Error(ErrorKind::Usage, "--preview replaces the picture again and again, and '" +
+                                              output.target().string() +
+                                              "' is no file that can be replaced");
+        }
         options.preview = [&](const Image& image) {
-            AtomicFile file(output);
+            // Nothing is written of a picture in which nothing is seen.
+            const bool isSeen = std::any_of(image.depth.begin(), image.depth.end(),
+                                            [](float depth) { return std::isfinite(depth); });
+            if (!isSeen) return;
+            AtomicFile file(output.target());
             writeImage(file, image, run.progress());
             file.commit();
         };
@@ -137,10 +150,7 @@ void drawSequence(CommandRun& run, const RenderRequest& request) {
     Totals totals;
     std::optional<Scene> scene;
     std::vector<CameraOptions> cameras;
-    bool hasInputFrames = false;
-    for (const ObjectRequest& object : request.scene.objects) {
-        hasInputFrames = hasInputFrames || hasFrame(object.file);
-    }
+    const bool hasInputFrames = hasFrames(request.scene);
     for (const int frame : request.frames) {
         if (!scene || hasInputFrames) {
             scene = loadScene(run, request.scene, frame);
@@ -149,7 +159,7 @@ void drawSequence(CommandRun& run, const RenderRequest& request) {
         PictureOptions picture = request.picture;
         if (request.turns > 0) picture.camera = cameras.at(static_cast<std::size_t>(frame - 1));
         AtomicFile output(withFrame(request.output, frame));
-        const Image image = drawFrame(run, request, *scene, picture, output.target(), totals);
+        const Image image = drawFrame(run, request, *scene, picture, output, totals);
         run.writePart(output, [&](AtomicFile& file) { writeImage(file, image, run.progress()); });
     }
     run.count("frames", request.frames.size());
@@ -218,7 +228,7 @@ void runRender(const CommandLine& line) {
     AtomicFile output(request.output);
     const Scene scene = loadScene(run, request.scene, 0);
     Totals totals;
-    const Image image = drawFrame(run, request, scene, request.picture, output.target(), totals);
+    const Image image = drawFrame(run, request, scene, request.picture, output, totals);
     run.writeOutput(output, [&](AtomicFile& file) { writeImage(file, image, run.progress()); });
 }
 

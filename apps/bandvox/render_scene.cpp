@@ -2,6 +2,7 @@
 
 #include "choose_grid.h"
 #include "frame_pattern.h"
+#include "render_settings.h"
 #include "scene_file.h"
 #include "standard_streams.h"
 #include "vdb_input.h"
@@ -27,6 +28,13 @@ const std::vector<std::string> kObjectNames{
     "grid",        "mode",         "iso",        "color",       "colors",     "roughness",
     "reflectance", "transparency", "refraction", "tint-length", "extinction", "anisotropy",
     "emission",    "temperature",  "glow",       "scale",       "rotate",     "translate"};
+
+// Options that say what a scene file says of lights.
+const std::vector<std::string> kLightNames{
+    "light",   "light-at",    "light-color",      "light-size",
+    "ambient", "environment", "environment-turn", "environment-visible"};
+
+const std::vector<std::string> kEnvironmentNames{"color", "file", "turn", "visible"};
 
 ObjectRequest readObject(const OptionValues& values, const std::string& file) {
     ObjectRequest request;
@@ -129,9 +137,12 @@ Light readLight(const OptionValues& values) {
 void readSceneFile(const CommandLine& line, const std::string& path,
                    const std::vector<std::string>& pictureNames, SceneRequest& request) {
     const SceneFile file(path);
-    for (const std::string& name : kObjectNames) {
-        if (line.has(name)) {
-            line.fail(name, "no such option beside a scene file, which says it for each object");
+    for (const auto& names : {kObjectNames, kLightNames}) {
+        for (const std::string& name : names) {
+            if (!line.has(name)) continue;
+            throw Error(ErrorKind::Usage, "option --" + name +
+                                              " has no place beside a scene file, which says what "
+                                              "is seen and what lights it");
         }
     }
     std::vector<std::string> names = kObjectNames;
@@ -145,7 +156,10 @@ void readSceneFile(const CommandLine& line, const std::string& path,
         throw Error(ErrorKind::Input, "'" + path + "' has no objects; expected a list of them");
     }
     readLights(line, request);
-    if (file.has("lights")) {
+    // An environment has lamps of its own.
+    const bool hasMap =
+        file.has("environment") && file.group("environment", kEnvironmentNames).has("file");
+    if (file.has("lights") || hasMap) {
         request.lights.clear();
         for (const OptionValues& values :
              file.list("lights", {"direction", "position", "space", "color", "size"})) {
@@ -153,7 +167,7 @@ void readSceneFile(const CommandLine& line, const std::string& path,
         }
     }
     if (file.has("environment")) {
-        OptionValues values = file.group("environment", {"color", "file", "turn", "visible"});
+        OptionValues values = file.group("environment", kEnvironmentNames);
         if (const auto map = values.text("file")) values.set("file", file.beside(*map));
         Environment& environment = request.environment;
         environment.map = readMap(values, "file", "turn");
@@ -168,6 +182,7 @@ void readSceneFile(const CommandLine& line, const std::string& path,
         if (const auto camera = values.text("camera-file")) {
             values.set("camera-file", file.beside(*camera));
         }
+        readPictureOptions(values);  // refuses what cannot be, by the file's name
         for (const auto& [name, value] : values.all()) {
             if (!request.picture.has(name)) request.picture.set(name, value);
         }
@@ -182,7 +197,13 @@ template <typename Grid>
 void place(std::shared_ptr<const Grid>& grid, const ObjectRequest& request) {
     if (!grid) return;
     const auto transform = grid->transform().copy();
-    transform->postScale(request.scale);
+    try {
+        transform->postScale(request.scale);
+    } catch (const openvdb::Exception&) {
+        throw Error(ErrorKind::Usage, "a scale of " + formatNumber(request.scale) +
+                                          " makes the voxels of '" + request.file +
+                                          "' smaller than OpenVDB takes");
+    }
     for (int axis = 0; axis < 3; ++axis) {
         transform->postRotate(request.rotate[axis] * std::numbers::pi / 180,
                               openvdb::math::Axis(axis));

@@ -1,6 +1,7 @@
 #include "scene_file.h"
 
 #include "option_table.h"
+#include "standard_streams.h"
 #include "words.h"
 
 #include <bandvox/core/error.h>
@@ -17,6 +18,8 @@ namespace bandvox::app {
 namespace {
 
 const std::vector<std::string> kGroups{"objects", "lights", "environment", "picture", "camera"};
+
+const std::vector<std::string> kFlags{"shadows", "allow-empty", "visible"};
 
 // A setting as an option would give it; nothing if it can be none.
 std::optional<std::string> textOf(const std::string& name, const nlohmann::json& value) {
@@ -93,7 +96,14 @@ OptionValues SceneFile::read(const nlohmann::json& settings, const std::string& 
             }
             fail(why.str());
         }
-        if (value.is_boolean()) {
+        const bool isFlag = std::find(kFlags.begin(), kFlags.end(), name) != kFlags.end();
+        if (isFlag != value.is_boolean()) {
+            std::string setting = where;
+            setting += "." + name;
+            fail(setting +
+                 (isFlag ? " is neither true nor false" : " is true or false; expected a value"));
+        }
+        if (isFlag) {
             if (value.get<bool>()) values.set(name, "");
             continue;
         }
@@ -101,7 +111,7 @@ OptionValues SceneFile::read(const nlohmann::json& settings, const std::string& 
         if (!text) {
             std::string setting = where;
             setting += "." + name;
-            fail(setting + " is neither text, a number, a list of numbers, true nor false");
+            fail(setting + " is neither text, a number nor a list of numbers");
         }
         values.set(name, *text);
     }
@@ -109,7 +119,8 @@ OptionValues SceneFile::read(const nlohmann::json& settings, const std::string& 
 }
 
 std::string SceneFile::beside(const std::string& file) const {
-    return (mPath.parent_path() / file).string();
+    // The standard input lies nowhere.
+    return isStandardInput(file) ? file : (mPath.parent_path() / file).string();
 }
 
 void SceneFile::fail(const std::string& why) const {

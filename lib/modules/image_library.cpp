@@ -83,7 +83,8 @@ void convertColors(std::vector<float>& pixels, const OIIO::ImageSpec& spec, cons
 }
 
 std::uint8_t eightBits(float value) {
-    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0F, 1.0F)));
+    // Also takes what is not a number, as 0.
+    return static_cast<std::uint8_t>(std::lround(255 * (value > 0 ? std::min(value, 1.0F) : 0)));
 }
 
 bool writeStrips(OIIO::ImageOutput& output, const PngRows& image) {

@@ -67,7 +67,7 @@ TEST(DensityToImage, SaysHowFarADensityReaches) {
                                 [](const Vec3d& x) { return 0.45 * std::exp(-x.lengthSqr() / 8); });
     std::string message;
     EXPECT_EQ(kindOfFailure(small, smallPicture(8, 8), &message), ErrorKind::Result);
-    EXPECT_NE(message.find("0.45 only"), std::string::npos) << message;
+    EXPECT_NE(message.find("at most 0.45"), std::string::npos) << message;
 }
 
 TEST(DensityToImage, TellsBadGridsFromBadOptions) {

@@ -60,7 +60,6 @@ EnvironmentMap::EnvironmentMap(PixelArray pixels, double turn, const std::string
     mRows.assign(height + 1, 0.0);
     mColumns.assign(static_cast<std::size_t>(height) * (width + 1), 0.0);
     for (int row = 0; row < height; ++row) {
-        const double polar = pi * (row + 0.5) / height;
         const double area =
             2 * pi / width * (std::cos(pi * row / height) - std::cos(pi * (row + 1) / height));
         double* sums = &mColumns[static_cast<std::size_t>(row) * (width + 1)];
@@ -68,11 +67,6 @@ EnvironmentMap::EnvironmentMap(PixelArray pixels, double turn, const std::string
             const Vec3d light = pixel(column, row);
             // A trace everywhere, since between a bright and a black pixel there is light.
             sums[column + 1] = sums[column] + brightness(light) + 1e-12;
-            const double around = 2 * pi * (column + 0.5) / width;
-            const Vec3d direction(std::sin(polar) * std::sin(around - pi), std::cos(polar),
-                                  -std::sin(polar) * std::cos(around - pi));
-            const auto basis = harmonics(direction);
-            for (int i = 0; i < 9; ++i) mHarmonics[i] += area * basis[i] * light;
         }
         const double total = sums[width];
         mRows[row + 1] = mRows[row] + total * area;
@@ -80,6 +74,27 @@ EnvironmentMap::EnvironmentMap(PixelArray pixels, double turn, const std::string
     }
     const double total = mRows[height];
     for (double& sum : mRows) sum /= total;
+    project();
+}
+
+// Small maps are looked at between their pixels, too: these are what light is interpolated between.
+void EnvironmentMap::project() {
+    constexpr int kLeastHeight = 64;
+    const int rows = mPixels.height * std::max((kLeastHeight - 1) / mPixels.height + 1, 1);
+    const int columns = mPixels.width * std::max((2 * kLeastHeight - 1) / mPixels.width + 1, 1);
+    for (int row = 0; row < rows; ++row) {
+        const double polar = pi * (row + 0.5) / rows;
+        const double area =
+            2 * pi / columns * (std::cos(pi * row / rows) - std::cos(pi * (row + 1) / rows));
+        for (int column = 0; column < columns; ++column) {
+            const double around = 2 * pi * (column + 0.5) / columns - pi;
+            const Vec3d direction(std::sin(polar) * std::sin(around), std::cos(polar),
+                                  -std::sin(polar) * std::cos(around));
+            const auto basis = harmonics(direction);
+            const Vec3d light = area * inMap(direction);
+            for (int i = 0; i < 9; ++i) mHarmonics[i] += basis[i] * light;
+        }
+    }
 }
 
 Vec3d EnvironmentMap::pixel(int column, int row) const {
@@ -101,7 +116,11 @@ Vec2d EnvironmentMap::placeOf(const Vec3d& d) const {
 }
 
 Vec3d EnvironmentMap::radiance(const Vec3d& direction) const {
-    const Vec2d place = placeOf(toMap(direction));
+    return inMap(toMap(direction));
+}
+
+Vec3d EnvironmentMap::inMap(const Vec3d& direction) const {
+    const Vec2d place = placeOf(direction);
     const double x = place[0] - 0.5, y = std::clamp(place[1] - 0.5, 0.0, mPixels.height - 1.0);
     const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(y);
     const double right = x - column, down = y - row;

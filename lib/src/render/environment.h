@@ -40,6 +40,8 @@ class EnvironmentMap {
     double density(const openvdb::Vec3d& direction) const;
 
   private:
+    void project();
+    openvdb::Vec3d inMap(const openvdb::Vec3d& direction) const;
     openvdb::Vec3d pixel(int column, int row) const;
     openvdb::Vec3d toMap(const openvdb::Vec3d& direction) const;
     openvdb::Vec2d placeOf(const openvdb::Vec3d& direction) const;

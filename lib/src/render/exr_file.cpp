@@ -29,6 +29,8 @@ namespace {
 // Rows that are encoded at a time, whole blocks of the compression for every thread.
 constexpr int kStripRows = 128;
 
+constexpr float kLargestHalf = 65504;
+
 // Takes what the encoder writes to a stream, and keeps what the disk has said about it.
 class ExrStream final : public Imf::OStream {
   public:
@@ -141,7 +143,10 @@ void writePixels(Imf::OutputFile& file, const Image& image, Progress& progress) 
         const int rows = std::min(kStripRows, image.height - top);
         const std::size_t rowLength = 4 * static_cast<std::size_t>(image.width);
         const float* from = &image.color[top * rowLength];
-        colors.assign(from, from + rows * rowLength);
+        colors.resize(rows * rowLength);
+        std::transform(from, from + rows * rowLength, colors.begin(), [](float value) {
+            return Imath::half(std::clamp(value, -kLargestHalf, kLargestHalf));
+        });
         for (int c = 0; c < 4; ++c) {
             insertSlice(buffer, kColorChannels[c], Imf::HALF, colors.data() + c, image,
                         image.top + top, 4);

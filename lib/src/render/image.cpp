@@ -111,7 +111,10 @@ void writeImage(AtomicFile& file, const Image& image, Progress& progress) {
         std::ostringstream memory;
         failure = encode(memory, image, png, progress);
         const std::string_view bytes = memory.view();
+        errno = 0;
         stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        stream.flush();
+        if (!stream) failure.diskError = errno;
     } else {
         failure = encode(stream, image, png, progress);
     }

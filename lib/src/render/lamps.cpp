@@ -68,7 +68,8 @@ Vec3d Lamps::seenAlong(const Vec3d& direction) const {
         if (light.kind != Light::Kind::Directional || !(light.size > 0)) continue;
         const double edge = std::cos(halfAngle(light));
         // Its light, spread over its disk: on a surface that faces it π times the colour.
-        if (direction.dot(light.place) >= edge) sum += light.color / (2 * (1 - edge));
+        const double sine = std::sin(0.5 * halfAngle(light));
+        if (direction.dot(light.place) >= edge) sum += light.color / (4 * sine * sine);
     }
     return sum;
 }

@@ -20,6 +20,23 @@ constexpr double kNothingLeft = 1e-4;
 // band-limited one but what is near their own frequency, half a cycle per voxel.
 constexpr double kLongSteps = 2;
 
+// In a block of which most is far thinner than its densest place, random places would be tried for
+// ever: after so many the rest is followed by so many steps.
+constexpr int kMostTries = 2048;
+constexpr int kBlockSteps = 64;
+
+// Where a depth is reached that is reached between two places.
+double placeOfDepth(const VolumeObject& volume, const Ray& ray, double t0, double t1, double depth,
+                    VolumeProbe& probe) {
+    const double length = (t1 - t0) / kBlockSteps;
+    for (int i = 0; i < kBlockSteps; ++i) {
+        const double t = t0 + (i + 0.5) * length;
+        depth -= length * volume.extinctionAt(ray.origin + t * ray.direction, probe);
+        if (depth <= 0) return t;
+    }
+    return t1;
+}
+
 // The mean of the light from around.
 Vec3d meanOf(const Environment& environment) {
     return environment.map ? environment.color * environment.map->mean() : environment.color;
@@ -37,14 +54,13 @@ MediumTransport::MediumTransport(const PreparedScene& scene, const Lamps& lamps,
       mLamps(lamps),
       mTransport(options.transport),
       mMethod(options.volumes.method),
-      mStep(std::numeric_limits<double>::max()),
       mAround(meanOf(scene.environment())) {
     bool areBandLimited = true;
     for (const auto& volume : scene.volumes()) {
-        mStep = std::min(mStep, options.volumes.step * volume->voxel());
+        mSteps.push_back(options.volumes.step * volume->voxel());
         areBandLimited = areBandLimited && volume->isBandLimited();
     }
-    mLongStep = areBandLimited ? kLongSteps * mStep : mStep;
+    if (areBandLimited) mLongSteps = kLongSteps;
 }
 
 MediumLight MediumTransport::along(const Ray& ray, double end, const InsideOf& inside,
@@ -55,41 +71,66 @@ MediumLight MediumTransport::along(const Ray& ray, double end, const InsideOf& i
                : alongByTracking(ray, end, inside, numbers, probes);
 }
 
-// The parts of a ray in which there is anything, in order, those that touch joined to one.
-std::vector<MediumTransport::Interval> MediumTransport::intervals(const Ray& ray,
-                                                                  double end) const {
+// The parts of a ray in which there is anything of a volume, in order, those that touch joined to
+// one.
+std::vector<MediumTransport::Interval> MediumTransport::intervalsOf(std::size_t i, const Ray& ray,
+                                                                    double end) const {
     std::vector<Interval> found;
-    for (const auto& volume : mScene.volumes()) {
-        volume->walk(ray, end, [&](double t0, double t1, double /*most*/) {
-            if (t1 > t0) found.push_back({t0, std::min(t1, end)});
-            return false;
-        });
-    }
-    if (mScene.volumes().size() > 1) {
-        std::sort(found.begin(), found.end(),
-                  [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
-    }
-    std::size_t last = 0;
-    for (std::size_t i = 1; i < found.size(); ++i) {
+    mScene.volumes()[i]->walk(ray, end, [&](double t0, double t1, double /*most*/) {
+        t1 = std::min(t1, end);
         // What rounding leaves between two blocks is no gap.
-        if (found[i].begin <= found[last].end + 1e-3 * mStep) {
-            found[last].end = std::max(found[last].end, found[i].end);
-        } else {
-            found[++last] = found[i];
+        if (!found.empty() && t0 <= found.back().end + 1e-3 * mSteps[i]) {
+            found.back().end = std::max(found.back().end, t1);
+        } else if (t1 > t0) {
+            found.push_back({t0, t1, mSteps[i]});
         }
-    }
-    if (!found.empty()) found.resize(last + 1);
+        return false;
+    });
     return found;
 }
 
-// Calls visit(t, length) for the middles of steps; stops when it returns true. Of a band-limited
-// density that is nothing at the ends of its interval, their sum is the integral: what the step
-// does not see is above the band.
+// The same of all volumes, with the shortest steps of those that are there.
+std::vector<MediumTransport::Interval> MediumTransport::intervals(const Ray& ray,
+                                                                  double end) const {
+    if (mSteps.size() == 1) return intervalsOf(0, ray, end);
+    std::vector<Interval> all;
+    std::vector<double> borders;
+    for (std::size_t i = 0; i < mSteps.size(); ++i) {
+        for (const Interval& interval : intervalsOf(i, ray, end)) {
+            all.push_back(interval);
+            borders.push_back(interval.begin);
+            borders.push_back(interval.end);
+        }
+    }
+    std::sort(borders.begin(), borders.end());
+    std::vector<Interval> found;
+    for (std::size_t b = 1; b < borders.size(); ++b) {
+        const double middle = 0.5 * (borders[b - 1] + borders[b]);
+        double step = std::numeric_limits<double>::max();
+        bool isFilled = false;
+        for (const Interval& interval : all) {
+            if (!(interval.begin < middle && middle < interval.end)) continue;
+            isFilled = true;
+            step = std::min(step, interval.step);
+        }
+        if (!isFilled) continue;
+        if (!found.empty() && found.back().end == borders[b - 1] && found.back().step == step) {
+            found.back().end = borders[b];
+        } else {
+            found.push_back({borders[b - 1], borders[b], step});
+        }
+    }
+    return found;
+}
+
+// Calls visit(t, length) for the middles of steps, so many times as long as usual; stops when it
+// returns true. Of a band-limited density that is nothing at the ends of its interval, their sum is
+// the integral: what the step does not see is above the band.
 template <typename Visitor>
-void MediumTransport::forEachStep(const Ray& ray, double end, double step,
+void MediumTransport::forEachStep(const Ray& ray, double end, double longer,
                                   const Visitor& visit) const {
     for (const Interval& interval : intervals(ray, end)) {
-        const double steps = std::ceil((interval.end - interval.begin) / step);
+        const double steps = std::ceil((interval.end - interval.begin) / (longer * interval.step));
         const double length = (interval.end - interval.begin) / steps;
         for (double i = 0; i < steps; ++i) {
             if (visit(interval.begin + (i + 0.5) * length, length)) return;
@@ -101,7 +142,7 @@ MediumLight MediumTransport::alongBySteps(const Ray& ray, double end, const Insi
                                           SampleStream& numbers, SceneProbes& probes) const {
     MediumLight result;
     double seen = 0;
-    forEachStep(ray, end, mStep, [&](double t, double length) {
+    forEachStep(ray, end, 1, [&](double t, double length) {
         const Vec3d place = ray.origin + t * ray.direction;
         Vec3d light(0.0);
         double extinction = 0;
@@ -134,7 +175,8 @@ MediumLight MediumTransport::alongByTracking(const Ray& ray, double end, const I
     for (int i = 0; i < static_cast<int>(mScene.volumes().size()); ++i) {
         const VolumeObject& volume = *mScene.volumes()[i];
         volume.walk(ray, nearest, [&](double t0, double t1, double most) {
-            for (double t = t0;;) {
+            double t = t0;
+            for (int tries = 0; tries < kMostTries; ++tries) {
                 t -= std::log(1 - numbers.next()) / most;
                 if (t >= std::min(t1, nearest)) return t1 >= nearest;
                 const double here =
@@ -145,11 +187,29 @@ MediumLight MediumTransport::alongByTracking(const Ray& ray, double end, const I
                     return true;
                 }
             }
+            // The rest of the block is followed by steps.
+            const double last = std::min(t1, nearest);
+            const double depth = -std::log(1 - numbers.next());
+            if (depthBySteps(i, ray, t, last, probes.volumes[i]) < depth) return t1 >= nearest;
+            nearest = placeOfDepth(volume, ray, t, last, depth, probes.volumes[i]);
+            stopped = i;
+            return true;
         });
     }
     if (stopped < 0) return {};
     const Vec3d place = ray.origin + nearest * ray.direction;
     return {source(stopped, place, ray, inside, numbers, probes), 0, nearest};
+}
+
+double MediumTransport::depthBySteps(std::size_t i, const Ray& ray, double t0, double t1,
+                                     VolumeProbe& probe) const {
+    const double length = (t1 - t0) / kBlockSteps;
+    double depth = 0;
+    for (int step = 0; step < kBlockSteps; ++step) {
+        const double t = t0 + (step + 0.5) * length;
+        depth += length * mScene.volumes()[i]->extinctionAt(ray.origin + t * ray.direction, probe);
+    }
+    return depth;
 }
 
 // The light that a place of a volume sends against a ray, if so much of it is there that nothing
@@ -196,7 +256,7 @@ double MediumTransport::left(const Ray& ray, double end, SampleStream& numbers,
     if (mMethod == VolumeOptions::Method::Steps) {
         double depth = 0;
         const double deepest = -std::log(kNothingLeft);
-        forEachStep(ray, end, mLongStep, [&](double t, double length) {
+        forEachStep(ray, end, mLongSteps, [&](double t, double length) {
             const Vec3d place = ray.origin + t * ray.direction;
             for (std::size_t i = 0; i < mScene.volumes().size(); ++i) {
                 depth += length * mScene.volumes()[i]->extinctionAt(place, probes.volumes[i]);
@@ -211,7 +271,8 @@ double MediumTransport::left(const Ray& ray, double end, SampleStream& numbers,
     for (std::size_t i = 0; i < mScene.volumes().size(); ++i) {
         const VolumeObject& volume = *mScene.volumes()[i];
         volume.walk(ray, end, [&](double t0, double t1, double most) {
-            for (double t = t0;;) {
+            double t = t0;
+            for (int tries = 0; tries < kMostTries; ++tries) {
                 t -= std::log(1 - numbers.next()) / most;
                 if (t >= std::min(t1, end)) return false;
                 const double here =
@@ -219,6 +280,8 @@ double MediumTransport::left(const Ray& ray, double end, SampleStream& numbers,
                 passes *= std::max(1 - here / most, 0.0);
                 if (passes < 1e-6) return true;
             }
+            passes *= std::exp(-depthBySteps(i, ray, t, std::min(t1, end), probes.volumes[i]));
+            return passes < 1e-6;
         });
     }
     return passes;

@@ -28,12 +28,16 @@ class MediumTransport {
     double left(const Ray& ray, double end, SampleStream& numbers, SceneProbes& probes) const;
 
   private:
+    // A part of a ray, and the steps that the volumes in it need.
     struct Interval {
-        double begin, end;
+        double begin, end, step;
     };
+    std::vector<Interval> intervalsOf(std::size_t volume, const Ray& ray, double end) const;
     std::vector<Interval> intervals(const Ray& ray, double end) const;
+    double depthBySteps(std::size_t volume, const Ray& ray, double t0, double t1,
+                        VolumeProbe& probe) const;
     template <typename Visitor>
-    void forEachStep(const Ray& ray, double end, double step, const Visitor& visit) const;
+    void forEachStep(const Ray& ray, double end, double longer, const Visitor& visit) const;
     MediumLight alongBySteps(const Ray& ray, double end, const InsideOf& inside,
                              SampleStream& numbers, SceneProbes& probes) const;
     MediumLight alongByTracking(const Ray& ray, double end, const InsideOf& inside,
@@ -45,8 +49,8 @@ class MediumTransport {
     const Lamps& mLamps;
     const TransportOptions mTransport;
     VolumeOptions::Method mMethod;
-    double mStep = 0;                 // world units
-    double mLongStep = 0;             // the same, where only the sum of the density counts
+    std::vector<double> mSteps;  // of each volume, world units
+    double mLongSteps = 1;  // how much longer they are where only the sum of the density counts
     openvdb::Vec3d mAround{0, 0, 0};  // the mean of the light from around
 };
 

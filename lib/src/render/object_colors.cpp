@@ -1,17 +1,41 @@
 #include "render/object_colors.h"
 
+#include <bandvox/core/error.h>
+
 #include <openvdb/tree/ValueAccessor.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace bandvox {
 
 using openvdb::Vec3d;
 
+namespace {
+
+constexpr float kBrightest = 1e6F;
+
+}  // namespace
+
 ObjectColors::ObjectColors(openvdb::Vec3SGrid::ConstPtr grid)
     : mGrid(std::move(grid)),
-      mToIndex(mGrid->transform().baseMap()->getAffineMap()->getMat4().inverse()) {}
+      mToIndex(mGrid->transform().baseMap()->getAffineMap()->getMat4().inverse()) {
+    const std::string name = "the grid \"" + mGrid->getName() + "\" ";
+    if (!mGrid->transform().isLinear()) {
+        throw Error(ErrorKind::Input, name + "has a transform of type " +
+                                          mGrid->transform().mapType() + "; expected a linear one");
+    }
+    for (auto color = mGrid->cbeginValueOn(); color; ++color) {
+        for (int c = 0; c < 3; ++c) {
+            if (std::abs((*color)[c]) <= kBrightest) continue;
+            throw Error(ErrorKind::Input, name + "has a colour of " + std::to_string((*color)[c]) +
+                                              "; expected colours up to " +
+                                              std::to_string(kBrightest));
+        }
+    }
+}
 
 std::optional<Vec3d> ObjectColors::at(const Vec3d& place) const {
     const Vec3d index = mToIndex.transform(place);
@@ -32,7 +56,8 @@ std::optional<Vec3d> ObjectColors::at(const Vec3d& place) const {
         weights += weight;
     }
     if (!(weights > 0)) return std::nullopt;
-    return sum / weights;
+    sum /= weights;
+    return Vec3d(std::max(sum[0], 0.0), std::max(sum[1], 0.0), std::max(sum[2], 0.0));
 }
 
 }  // namespace bandvox

@@ -174,6 +174,7 @@ void drawWithPreview(Painter& painter, Image& image, const PictureOptions& optio
     parallelFor(static_cast<std::int64_t>(tiles.size()),
                 [&](std::int64_t i) { painter.draw(tiles[i], kCoarse, progress); });
     Clock::time_point shown = Clock::now();
+    image.metadata.emplace_back("bandvox_preview", 1);
     options.preview(image);
     const std::size_t part = std::max<std::size_t>(tiles.size() / kPreviewParts, 1);
     for (std::size_t first = 0; first < tiles.size(); first += part) {
@@ -186,22 +187,25 @@ void drawWithPreview(Painter& painter, Image& image, const PictureOptions& optio
             shown = Clock::now();
         }
     }
+    image.metadata.pop_back();
 }
 
 // Says why nothing is seen.
 [[noreturn]] void failUnseen(const PreparedScene& scene, std::int64_t rays) {
     std::ostringstream message;
-    message << "nothing to see: ";
     if (scene.surfaces().size() == 1 && scene.volumes().empty()) {
         const SurfaceObject& surface = *scene.surfaces().front();
         if (surface.maximum() < surface.threshold()) {
-            message << "the density reaches " << surface.maximum() << " only, below the iso-value "
-                    << surface.threshold();
-            throw Error(ErrorKind::Result, message.str());
+            throw Error(ErrorKind::Result, surface.whyEmpty());
         }
     }
-    message << "none of " << rays
-            << " lines of sight meets the surface; expected the camera to face it";
+    message << "nothing to see: none of " << rays << " lines of sight ";
+    if (scene.volumes().empty()) {
+        message << "meets the surface; expected the camera to face it";
+    } else {
+        message << "meets a surface, or loses a thousandth of its light in a volume; expected the "
+                   "camera to face one, or more extinction";
+    }
     throw Error(ErrorKind::Result, message.str());
 }
 
@@ -221,8 +225,7 @@ RenderResult sceneToImage(const Scene& scene, const PictureOptions& options, Pro
     const PreparedScene prepared(scene, options, progress);
     if (!options.allowEmpty && isEmpty(prepared)) {
         if (prepared.surfaces().size() == 1 && prepared.volumes().empty()) {
-            const SurfaceObject& surface = *prepared.surfaces().front();
-            failEmpty(surface.maximum(), surface.threshold());
+            throw Error(ErrorKind::Result, prepared.surfaces().front()->whyEmpty());
         }
         throw Error(ErrorKind::Result, "nothing to see: no object has a density that is seen");
     }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -162,8 +163,15 @@ DrawableGrid makeDrawable(const openvdb::FloatGrid::ConstPtr& grid,
     }
     // Distances are negative inside.
     drawable.metadata.reset();
+    const double distance = iso.value_or(0);
+    if (!(distance < grid->background())) {
+        std::ostringstream message;
+        message << "the iso-value is " << distance
+                << "; it must be below the level set's background, " << grid->background();
+        throw Error(iso ? ErrorKind::Usage : ErrorKind::Input, message.str());
+    }
     drawable.grid = opposite(*grid);
-    drawable.iso = isoOf(*drawable.grid, std::nullopt, -iso.value_or(0));
+    drawable.iso = -distance;
     return drawable;
 }
 

@@ -3,6 +3,7 @@
 #include "render/picture_request.h"
 
 #include <algorithm>
+#include <sstream>
 
 namespace bandvox {
 
@@ -32,6 +33,17 @@ SurfaceObject::SurfaceObject(const SceneObject& object, const PictureOptions& op
     mFlat = kFlatGradient * mField->slope;
 }
 
+std::string SurfaceObject::whyEmpty() const {
+    std::ostringstream message;
+    message << "nothing to see: ";
+    if (mDrawable.isLevelSet) {
+        message << "the level set is at least " << -maximum() << ", above the iso-value " << iso();
+    } else {
+        message << "the density is at most " << maximum() << ", below the iso-value " << iso();
+    }
+    return message.str();
+}
+
 std::unique_ptr<DensityProbe> SurfaceObject::probe() const {
     return mField ? mField->reconstruction->probe() : nullptr;
 }
@@ -42,9 +54,9 @@ Ray SurfaceObject::toIndex(const Ray& ray) const {
 }
 
 SurfaceHit SurfaceObject::toWorld(const RayHit& hit, const Ray& ray) const {
-    // Deep inside, where an eye may start, there is no slope: the surface faces the eye.
+    // Where a ray starts inside, as an eye may, the surface faces it.
     SurfaceHit found{hit.t, -ray.direction};
-    if (hit.gradient.length() > mFlat) {
+    if (hit.t > 0 && hit.gradient.length() > mFlat) {
         found.normal = -grid().transform().baseMap()->applyIJT(hit.gradient).unit();
     }
     return found;

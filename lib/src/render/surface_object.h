@@ -12,6 +12,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace bandvox {
 
@@ -43,6 +44,8 @@ class SurfaceObject {
     /// The highest value of the grid; below iso, nothing is to be seen.
     double maximum() const { return mBlocks->maximum(); }
     bool empty() const { return mBlocks->empty(); }
+    /// That nothing is to be seen because no value is inside, in words.
+    std::string whyEmpty() const;
 
     std::unique_ptr<DensityProbe> probe() const;
 

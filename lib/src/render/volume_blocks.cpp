@@ -18,8 +18,8 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 // of a spline, less than 0.004 of a step.
 constexpr int kReach = 3;
 
-// Densities below this stop no light to speak of.
-constexpr float kNoDensity = 1e-4F;
+// Densities below this part of the highest stop no light to speak of beside it.
+constexpr float kNoDensity = 1e-5F;
 
 // Interpolation by cubic splines multiplies values by 1.549 at most along each axis; those from 0
 // to 1 reach half of 1 + 1.549³.
@@ -80,7 +80,7 @@ LeafMaxima findMaxima(const Leaf& leaf) {
     for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
         const float value = values[i];
         found.finite = found.finite && std::abs(value) <= kLargest;
-        if (!(value > found.most[13] || value > kNoDensity)) continue;
+        if (!(value > 0)) continue;
         forNeighbours(Leaf::offsetToLocalCoord(i), [&](int neighbour) {
             found.most[neighbour] = std::max(found.most[neighbour], value);
         });
@@ -110,7 +110,7 @@ VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid,
     for (; tile; ++tile) {
         const float value = tile.getValue();
         mFinite = mFinite && std::abs(value) <= kLargest;
-        if (!(value > kNoDensity)) continue;
+        if (!(value > 0)) continue;
         openvdb::CoordBBox blocks = tile.getBoundingBox();
         blocks.min() >>= kLog2;
         blocks.max() >>= kLog2;
@@ -118,10 +118,18 @@ VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid,
         tiles.push_back({blocks, rise * value});
     }
     for (const auto& [blocks, most] : tiles) {
+        // The six sides, edges and corners with the first of them.
         openvdb::CoordBBox around = blocks;
         around.expand(1);
-        for (auto block = around.begin(); block; ++block) {
-            if (!blocks.isInside(*block)) raise(*block, most);
+        for (int axis = 0; axis < 3; ++axis) {
+            openvdb::CoordBBox before = around, behind = around;
+            before.max()[axis] = around.min()[axis];
+            behind.min()[axis] = around.max()[axis];
+            for (const openvdb::CoordBBox& side : {before, behind}) {
+                for (auto block = side.begin(); block; ++block) raise(*block, most);
+            }
+            around.min()[axis] = blocks.min()[axis];
+            around.max()[axis] = blocks.max()[axis];
         }
     }
 
@@ -129,12 +137,15 @@ VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid,
     std::vector<const Leaf*> leaves;
     grid.tree().getNodes(leaves);
     const std::vector<LeafMaxima> found = examineLeaves(leaves, findMaxima);
+    float highest = 0;
+    for (const Tile& marked : tiles) highest = std::max(highest, marked.most);
+    for (const LeafMaxima& leaf : found) highest = std::max(highest, leaf.most[13]);
+    const float least = kNoDensity * highest;
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         mFinite = mFinite && found[i].finite;
         const openvdb::Coord block = leaves[i]->origin() >> kLog2;
         for (int n = 0; n < 27; ++n) {
-            if (found[i].most[n] > kNoDensity)
-                raise(neighbourOf(block, n), rise * found[i].most[n]);
+            if (found[i].most[n] > least) raise(neighbourOf(block, n), rise * found[i].most[n]);
         }
     }
     mBox = boxOfBlocks(mBlocks);

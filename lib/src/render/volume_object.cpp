@@ -20,6 +20,9 @@ namespace {
 // this.
 constexpr double kChosenDepth = 10;
 
+// Kelvin, beyond which a temperature is none.
+constexpr float kHottest = 1e9F;
+
 openvdb::Mat4d indexOfWorld(const openvdb::FloatGrid& grid) {
     return grid.transform().baseMap()->getAffineMap()->getMat4().inverse();
 }
@@ -59,6 +62,9 @@ VolumeObject::VolumeObject(const SceneObject& object, const PictureOptions& opti
     if (object.colors) mColors.emplace(object.colors);
     if (!object.temperatures) return;
     requireDrawable(*object.temperatures);
+    for (auto kelvin = object.temperatures->cbeginValueOn(); kelvin; ++kelvin) {
+        if (!(std::abs(*kelvin) <= kHottest)) failNotFinite(*object.temperatures);
+    }
     mToTemperature = indexOfWorld(*object.temperatures);
     mTemperature = readLattice(object.temperatures, densityMetadata(*object.temperatures), options);
 }
