@@ -359,6 +359,80 @@ TEST_F(RenderScene, ACameraOfAGltfFile) {
     }
 }
 
+TEST_F(RenderScene, NodesOfAGltfFileThatShareTheirChildrenEnd) {
+    std::string nodes;
+    for (int i = 0; i < 60; ++i) {
+        const std::string next = std::to_string(i + 1);
+        nodes += R"({"children": [)" + next + "," + next + "]},";
+    }
+    writeText(*sFolder / "shared.gltf",
+              R"({"cameras": [], "nodes": [)" + nodes + R"({"name": "last"}]})");
+    const RunResult result = render({"cube.vdb", "-o", "x.png", "--camera-file", "shared.gltf"});
+    EXPECT_EQ(result.status, 3) << result.err;
+    EXPECT_NE(result.err.find("no camera"), std::string::npos) << result.err;
+}
+
+TEST_F(RenderScene, FlagsOfASceneFileAreTrueOrFalse) {
+    for (const char* bad : {R"("false")", "0", R"("no")"}) {
+        writeText(*sFolder / "flag.json", R"({"objects": [{"file": "cube.vdb"}],
+            "picture": {"res": [8, 8], "shadows": )" +
+                                              std::string(bad) + "}}");
+        const RunResult result = render({"flag.json", "-o", "x.png"});
+        EXPECT_EQ(result.status, 3) << bad << result.err;
+        EXPECT_NE(result.err.find("shadows is neither true nor false"), std::string::npos)
+            << result.err;
+    }
+    writeText(*sFolder / "value.json", R"({"objects": [{"file": "cube.vdb", "roughness": true}]})");
+    EXPECT_EQ(render({"value.json", "-o", "x.png"}).status, 3);
+}
+
+TEST_F(RenderScene, APreviewLeavesWhatItCannotReplace) {
+    writeText(*sFolder / "keep.png", "old");
+    const RunResult away = render({"cube.vdb", "-o", "keep.png", "--res", "16x16", "--eye", "0,0,9",
+                                   "--lookat", "0,0,99", "--preview", "0"});
+    EXPECT_EQ(away.status, 4) << away.err;
+    EXPECT_EQ(readText(*sFolder / "keep.png"), "old");
+    std::filesystem::create_symlink("/dev/null", *sFolder / "null.png");
+    const RunResult device =
+        render({"cube.vdb", "-o", "null.png", "--res", "16x16", "--preview", "0"});
+    EXPECT_EQ(device.status, 2) << device.err;
+}
+
+TEST_F(RenderScene, ANameWithANumberSignIsAFileIfItIsThere) {
+    std::filesystem::copy_file(*sFolder / "cube.vdb", *sFolder / "part#2.vdb");
+    EXPECT_EQ(render({"part#2.vdb", "-o", "part.png", "--res", "8x8"}).status, 0);
+    EXPECT_EQ(render({"cube.vdb", "-o", "x.#.png", "--turntable", "4", "--frames", "0-2"}).status,
+              2);
+    EXPECT_EQ(render({"cube.vdb", "-o", "x.png", "--scale", "1e-9"}).status, 2);
+}
+
+TEST_F(RenderScene, ColorsAndLightsThatAreNoneAreRefused) {
+    const auto grids = readVdb(*sFolder / "sphere.vdb");
+    for (const float bad : {std::nanf(""), HUGE_VALF, 3e38F}) {
+        auto colors = openvdb::Vec3SGrid::create();
+        colors->setName("Cd");
+        colors->tree().setValue(openvdb::Coord(0), openvdb::Vec3f(0.5F, bad, 0.5F));
+        writeGrids("bad.vdb", {grids.at(0), colors});
+        const RunResult result = render({"bad.vdb", "-o", "x.png", "--res", "8x8"});
+        EXPECT_EQ(result.status, 3) << bad << result.err;
+        EXPECT_NE(result.err.find("Cd"), std::string::npos) << result.err;
+    }
+    writeText(*sFolder / "lit.json", R"({"objects": [{"file": "cube.vdb"}]})");
+    EXPECT_EQ(render({"lit.json", "-o", "x.png", "--light", "1,0,0"}).status, 2);
+}
+
+TEST_F(RenderScene, LevelSetsAreSpokenOfAsSuch) {
+    auto grid =
+        openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(1, openvdb::Vec3f(0), 0.1F);
+    writeGrids("ball.vdb", {grid});
+    const RunResult beyond = render({"ball.vdb", "-o", "x.png", "--iso", "5"});
+    EXPECT_EQ(beyond.status, 2);
+    EXPECT_NE(beyond.err.find("below the level set's background"), std::string::npos) << beyond.err;
+    const RunResult within = render({"ball.vdb", "-o", "x.png", "--iso=-4"});
+    EXPECT_EQ(within.status, 4) << within.err;
+    EXPECT_NE(within.err.find("above the iso-value -4"), std::string::npos) << within.err;
+}
+
 TEST_F(RenderScene, SaysOfAPictureHowItWasTaken) {
     ASSERT_EQ(render({"cube.vdb", "-o", "said.exr", "--eye", "1,2,6", "--lookat", "0,0,0", "--res",
                       "30x20", "--samples", "2"})

@@ -188,6 +188,16 @@ TEST(EnvironmentMap, DrawsDirectionsByBrightness) {
     }
 }
 
+TEST(EnvironmentMap, OfFewPixelsLightsAsOneOfMany) {
+    for (const int height : {1, 2, 5, 40}) {
+        const EnvironmentMap white(
+            mapOf(2 * height, height, [](const Vec3d&) { return Vec3d(1.0); }), 0, "test");
+        for (const Vec3d& normal : directions(6)) {
+            EXPECT_LT((white.irradiance(normal) - Vec3d(1.0)).length(), 2e-3) << height;
+        }
+    }
+}
+
 TEST(EnvironmentMap, MayBeBlackOrOfOnePixelOrGrey) {
     const EnvironmentMap black(PixelArray{4, 2, 3, std::vector<float>(24, 0.0F)}, 0, "test");
     EXPECT_EQ(black.radiance({0, 1, 0}), Vec3d(0.0));

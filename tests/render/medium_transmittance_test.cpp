@@ -241,6 +241,36 @@ TEST(Tracking, IsRightBetweenTheNodes) {
                     std::exp(-0.4 * through));
 }
 
+TEST(Tracking, EndsHoweverThickAVolumeIs) {
+    const auto blob = blobGrid(3);
+    PictureOptions options;
+    options.volumes.method = VolumeOptions::Method::Tracking;
+    for (const double extinction : {1e4, 1e9, 1e30}) {
+        MediumScene scene(sceneOf({volumeOf(blob, extinction)}), options);
+        const Ray through{kBlobMiddle + Vec3d(0, 0, 50), Vec3d(0, 0, -1)};
+        EXPECT_EQ(scene.along(through).left, 0) << extinction;
+        EXPECT_LT(scene.left(through), 1e-5) << extinction;
+        // Seen at its rim, where there is next to nothing of it.
+        EXPECT_GT(scene.along(through).depth, 30) << extinction;
+        EXPECT_LT(scene.along(through).depth, 47) << extinction;
+    }
+}
+
+TEST(Transmittance, VolumesStepByTheirOwnVoxels) {
+    // One a thousandth as large as the other, beside it and in it.
+    const auto large = blobGrid(6), small = blobGrid(3);
+    const auto transform = openvdb::math::Transform::createLinearTransform(1e-3);
+    const Vec3d shift = kBlobMiddle - transform->indexToWorld(kBlobMiddle);
+    transform->postTranslate(shift);
+    small->setTransform(transform);
+    MediumScene both(sceneOf({volumeOf(large, 0.1), volumeOf(small, 100)}), {});
+    MediumScene alone(sceneOf({volumeOf(large, 0.1)}), {});
+    MediumScene other(sceneOf({volumeOf(small, 100)}), {});
+    const Ray through{kBlobMiddle + Vec3d(0, 0, 100), Vec3d(0, 0, -1)};
+    EXPECT_NEAR(both.left(through), alone.left(through) * other.left(through), 1e-4);
+    EXPECT_NEAR(both.along(through).left, both.left(through), 1e-4);
+}
+
 TEST(Tracking, IsRightForTwoVolumes) {
     const auto first = blobGrid(4), second = blobGrid(2);
     PictureOptions options;
