@@ -15,9 +15,6 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::max();
 
-// How far from a surface a ray starts, voxels: beyond what places are off by, well within a voxel.
-constexpr double kBeyond = 0.02;
-
 // Paths that carry less than this end.
 constexpr double kLeastWeight = 1e-3;
 
@@ -119,7 +116,7 @@ Vec3d LightPaths::meet(const Path& path, const NearestSurface& found, Thread& th
 }
 
 double LightPaths::beyond(const Meeting& at) const {
-    return kBeyond * at.object.voxel();
+    return at.object.beyond();
 }
 
 // The matt ground, and what the coat shows of the lamps.

@@ -10,10 +10,6 @@ using openvdb::Vec3d;
 
 namespace {
 
-// How far beyond a surface a ray goes on, voxels: beyond what places are off by, well within a
-// voxel.
-constexpr double kBeyond = 0.02;
-
 // How often light passes through the glass of one object on its way to a place.
 constexpr int kMostPasses = 16;
 
@@ -129,7 +125,7 @@ Vec3d PreparedScene::passing(int i, const Ray& ray, double end, bool inside,
                              DensityProbe& probe) const {
     const SurfaceObject& surface = *mSurfaces[i];
     const Material& material = surface.material();
-    const double beyond = kBeyond * surface.voxel();
+    const double beyond = surface.beyond();
     Vec3d left(1.0);
     double t = 0;
     for (int pass = 0; pass < kMostPasses; ++pass) {

@@ -40,6 +40,9 @@ class SurfaceObject {
     const SurfaceBlocks& blocks() const { return *mBlocks; }
     /// The shortest side of a voxel, world units.
     double voxel() const { return mVoxel; }
+    /// How far from the surface a ray starts or goes on, world units: beyond what places are off
+    /// by, well within a voxel.
+    double beyond() const { return 0.02 * mVoxel; }
 
     /// The highest value of the grid; below iso, nothing is to be seen.
     double maximum() const { return mBlocks->maximum(); }
