@@ -67,6 +67,22 @@ void ReadGuard::endGrid() {
     mTree = nullptr;
 }
 
+void ReadGuard::moveTo(std::streamoff place) {
+    const std::streamoff over = place - mPlace;
+    mPlace = place;
+    if (over > 0 && (mStage == Stage::Blosc || mStage == Stage::Values)) endChunk();
+}
+
+ReadGuard ReadGuard::forLeaves(std::ios_base& stream, std::streamoff size) const {
+    ReadGuard guard = *this;
+    guard.mStream = &stream;
+    guard.mSize = size;
+    guard.mPlace = 0;
+    guard.mLast = {};
+    guard.mStage = Stage::Between;
+    return guard;
+}
+
 bool ReadGuard::lastNumberIsTooLarge() const {
     return mLast.number > static_cast<std::uint64_t>(left());
 }

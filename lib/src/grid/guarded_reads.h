@@ -1,5 +1,7 @@
 #pragma once
 
+#include "grid/byte_source.h"
+
 #include <openvdb/openvdb.h>
 
 #include <cstddef>
@@ -44,7 +46,12 @@ class ReadGuard {
     /// Takes note of what a read brought; false if that is damage.
     bool follow(std::span<const char> bytes);
 
-    void moveTo(std::streamoff place) { mPlace = place; }
+    /// Takes note of a move. One over a chunk that is due ends it.
+    void moveTo(std::streamoff place);
+
+    /// A guard for a stream of its own that holds whole leaves of the tree being read, and has
+    /// what OpenVDB told in the stream until now; it has this many bytes.
+    ReadGuard forLeaves(std::ios_base& stream, std::streamoff size) const;
 
     /// True if the last thing read was a number, larger than the number of bytes that are left:
     /// for that many there will be no room.
@@ -101,27 +108,33 @@ class ReadGuard {
     std::uint64_t mChunkBytes = 0;
 };
 
-/// A buffer for reading that is watched by a guard.
-template <typename Buffer>
-class GuardedBuffer : public Buffer {
+/// A stretch of a source that is read under a guard.
+class GuardedBuffer : public SourceBuffer {
   public:
-    /// Of a file with this many bytes.
-    explicit GuardedBuffer(std::streamoff size) : mGuard(size) {}
+    /// All of a source.
+    explicit GuardedBuffer(const ByteSource& source)
+        : SourceBuffer(source, 0, source.size()), mGuard(source.size()) {}
+
+    /// The bytes from `begin` up to `end`, which are whole leaves of the tree that `guard` watches;
+    /// they are read by `stream`.
+    GuardedBuffer(const ByteSource& source, std::streamoff begin, std::streamoff end,
+                  const ReadGuard& guard, std::ios_base& stream)
+        : SourceBuffer(source, begin, end), mGuard(guard.forLeaves(stream, end - begin)) {}
 
     ReadGuard& guard() { return mGuard; }
 
   protected:
     std::streamsize xsgetn(char* to, std::streamsize count) override {
         if (!mGuard.mayRead(count)) return 0;
-        const std::streamsize read = Buffer::xsgetn(to, count);
+        const std::streamsize read = SourceBuffer::xsgetn(to, count);
         return mGuard.follow({to, static_cast<std::size_t>(read)}) ? read : 0;
     }
     std::streampos seekoff(std::streamoff offset, std::ios::seekdir from,
                            std::ios::openmode which) override {
-        return moved(Buffer::seekoff(offset, from, which));
+        return moved(SourceBuffer::seekoff(offset, from, which));
     }
     std::streampos seekpos(std::streampos place, std::ios::openmode which) override {
-        return moved(Buffer::seekpos(place, which));
+        return moved(SourceBuffer::seekpos(place, which));
     }
 
   private:

@@ -1,4 +1,5 @@
 #include "grid/guarded_reads.h"
+#include "grid/leaf_reading.h"
 
 #include <bandvox/core/atomic_file.h>
 #include <bandvox/core/error.h>
@@ -50,7 +51,8 @@ class VdbArchive : public openvdb::io::Archive {
   public:
     using openvdb::io::Archive::write;
 
-    openvdb::GridPtrVec read(std::istream& stream, ReadGuard& guard) {
+    openvdb::GridPtrVec read(std::istream& stream, GuardedBuffer& buffer) {
+        ReadGuard& guard = buffer.guard();
         readHeader(stream);
         openvdb::io::StreamMetadata::Ptr metadata(new openvdb::io::StreamMetadata);
         openvdb::io::setStreamMetadataPtr(stream, metadata, /*transfer=*/false);
@@ -67,7 +69,9 @@ class VdbArchive : public openvdb::io::Archive {
             openvdb::io::GridDescriptor& descriptor = descriptors.emplace_back();
             grids.push_back(descriptor.read(stream));
             guard.beginGrid(*grids.back());
-            readGrid(grids.back(), descriptor, stream);
+            readByAllThreads(grids.back(), buffer, [&](const openvdb::GridBase::Ptr& grid) {
+                readGrid(grid, descriptor, stream);
+            });
             guard.endGrid();
             named[descriptor.uniqueName()] = grids.back();
         }
@@ -80,16 +84,16 @@ class VdbArchive : public openvdb::io::Archive {
     throw Error(ErrorKind::Input, name + ": " + why);
 }
 
-template <typename Buffer>
-openvdb::GridPtrVec readGrids(GuardedBuffer<Buffer>& buffer, const std::string& name) {
+openvdb::GridPtrVec readGrids(const ByteSource& source, const std::string& name) {
     constexpr const char* kDamaged = "it is not a whole VDB file: it ends too early, or is damaged";
     initializeOpenVdb();
+    GuardedBuffer buffer(source);
     try {
         // A stream that throws stops the reader at the end of a file that was cut short; its own
         // would go on with whatever is in memory.
         std::istream stream(&buffer);
         stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
-        return VdbArchive().read(stream, buffer.guard());
+        return VdbArchive().read(stream, buffer);
     } catch (const std::ios::failure&) {
         failInput(name, kDamaged);
     } catch (const std::bad_array_new_length&) {
@@ -168,20 +172,15 @@ openvdb::GridPtrVec readVdb(const fs::path& path) {
     }
     const auto size = static_cast<std::streamoff>(fs::file_size(path, ignored));
     if (size == 0) failInput(path.string(), "the file is empty");
-    GuardedBuffer<std::filebuf> buffer(size);
-    if (!buffer.open(path, std::ios::in | std::ios::binary)) {
-        failInput(path.string(), "it cannot be opened for reading");
-    }
-    return readGrids(buffer, path.string());
+    const FileBytes bytes(path, size);
+    if (!bytes.isOpen()) failInput(path.string(), "it cannot be opened for reading");
+    return readGrids(bytes, path.string());
 }
 
 openvdb::GridPtrVec readVdb(std::istream& stream, const std::string& name) {
     std::string bytes = readBytes(stream, name);
     if (bytes.empty()) failInput(name, "it is empty");
-    const auto size = static_cast<std::streamoff>(bytes.size());
-    GuardedBuffer<std::stringbuf> buffer(size);
-    buffer.str(std::move(bytes));
-    return readGrids(buffer, name);
+    return readGrids(MemoryBytes(std::move(bytes)), name);
 }
 
 }  // namespace bandvox

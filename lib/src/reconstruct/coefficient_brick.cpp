@@ -78,26 +78,26 @@ struct ConvolutionRows {
     std::size_t count, length, inPitch, outPitch;
 };
 
-// out[p] = Σ_l a_l in[p + (L + l)·stride] for kCount outputs from p on. A prefilter that goes far
-// towards Nyquist has terms a thousand times its sum, whose rounding would be seen in a float.
-template <int kCount>
+// out[p] = Σ_l a_l in[p + (L + l)·stride] for kCount outputs from p on.
+template <int kCount, typename Sum>
 [[gnu::always_inline]] inline void convolveSome(const float* middle, float* out, std::size_t stride,
-                                                std::span<const double> taps) {
-    double sum[kCount];
+                                                std::span<const Sum> taps) {
+    Sum sum[kCount];
     for (int p = 0; p < kCount; ++p) sum[p] = taps[0] * middle[p];
     for (std::size_t l = 1; l < taps.size(); ++l) {
         const float* before = middle - l * stride;
         const float* after = middle + l * stride;
-        for (int p = 0; p < kCount; ++p) sum[p] += taps[l] * (double(before[p]) + after[p]);
+        for (int p = 0; p < kCount; ++p) sum[p] += taps[l] * (Sum(before[p]) + after[p]);
     }
     for (int p = 0; p < kCount; ++p) out[p] = static_cast<float>(sum[p]);
 }
 
 // Convolves along the axis whose neighbours are `stride` apart.
-BANDVOX_FOR_EACH_INSTRUCTION_SET
-void convolve(const float* in, float* out, const ConvolutionRows& rows, std::size_t stride,
-              std::span<const double> taps) {
-    constexpr int kMany = 32, kFew = 8;
+template <typename Sum>
+[[gnu::always_inline]] inline void convolveRows(const float* in, float* out,
+                                                const ConvolutionRows& rows, std::size_t stride,
+                                                std::span<const Sum> taps) {
+    constexpr std::size_t kMany = 32, kFew = 8;
     const std::size_t reach = taps.size() - 1;
     for (std::size_t row = 0; row < rows.count; ++row) {
         const float* middle = in + row * rows.inPitch + reach * stride;
@@ -109,8 +109,22 @@ void convolve(const float* in, float* out, const ConvolutionRows& rows, std::siz
         for (; p + kFew <= rows.length; p += kFew) {
             convolveSome<kFew>(middle + p, to + p, stride, taps);
         }
-        for (; p < rows.length; ++p) convolveSome<1>(middle + p, to + p, stride, taps);
+        // The last ones together with some that have been done.
+        p = std::min(p, rows.length - kFew);
+        convolveSome<kFew>(middle + p, to + p, stride, taps);
     }
+}
+
+BANDVOX_FOR_EACH_INSTRUCTION_SET
+void convolve(const float* in, float* out, const ConvolutionRows& rows, std::size_t stride,
+              std::span<const double> taps) {
+    convolveRows(in, out, rows, stride, taps);
+}
+
+BANDVOX_FOR_EACH_INSTRUCTION_SET
+void convolveSingle(const float* in, float* out, const ConvolutionRows& rows, std::size_t stride,
+                    std::span<const float> taps) {
+    convolveRows(in, out, rows, stride, taps);
 }
 
 }  // namespace
@@ -136,17 +150,23 @@ CoefficientBrick::CoefficientBrick(const openvdb::FloatGrid& grid, const openvdb
     }
 
     // Convolve along x, then y, then z; each pass leaves fewer planes, rows, or nodes.
-    const std::span<const double> taps = design.prefilter;
+    const std::vector<float> single(design.prefilter.begin(), design.prefilter.end());
+    const auto pass = [&](const float* in, float* out, const ConvolutionRows& rows,
+                          std::size_t stride) {
+        if (design.singlePrecision) {
+            convolveSingle(in, out, rows, stride, single);
+        } else {
+            convolve(in, out, rows, stride, design.prefilter);
+        }
+    };
     const std::size_t rowLength = side, plane = rowLength * side, nodes = mNodes;
-    scratch.filtered.resize(nodes * plane);
-    convolve(scratch.lattice.data(), scratch.filtered.data(), {1, nodes * plane, 0, 0}, plane,
-             taps);
-    convolve(scratch.filtered.data(), scratch.lattice.data(),
-             {nodes, nodes * rowLength, plane, nodes * rowLength}, rowLength, taps);
     const auto pitch = static_cast<std::size_t>(mPitch);
+    scratch.filtered.resize(nodes * plane);
+    pass(scratch.lattice.data(), scratch.filtered.data(), {1, nodes * plane, 0, 0}, plane);
+    pass(scratch.filtered.data(), scratch.lattice.data(),
+         {nodes, nodes * rowLength, plane, nodes * rowLength}, rowLength);
     mCoefficients.assign(nodes * nodes * pitch, 0.0F);
-    convolve(scratch.lattice.data(), mCoefficients.data(), {nodes * nodes, nodes, rowLength, pitch},
-             1, taps);
+    pass(scratch.lattice.data(), mCoefficients.data(), {nodes * nodes, nodes, rowLength, pitch}, 1);
 }
 
 double CoefficientBrick::value(const SpreadingKernel& kernel, const openvdb::Vec3d& local) const {

@@ -181,6 +181,15 @@ InterpolationError interpolationError(const ExponentialFilter& filter,
             (gradient + std::numbers::sqrt3 * response.constantGradient) / faceGradient(filter)};
 }
 
+// That rounding the sums along three axes to floats costs a small part of a tolerance.
+bool roundsLittle(const std::vector<double>& prefilter, double tolerance) {
+    constexpr double kPartOfTolerance = 0.2;
+    constexpr double kRounding = 0.5 * std::numeric_limits<float>::epsilon();
+    double gain = std::abs(prefilter[0]);
+    for (std::size_t l = 1; l < prefilter.size(); ++l) gain += 2 * std::abs(prefilter[l]);
+    return gain * gain * gain * kRounding <= kPartOfTolerance * tolerance;
+}
+
 struct KernelChoice {
     double beta = 0;
     KernelResponse response;
@@ -225,8 +234,9 @@ InterpolationDesign designInterpolation(const ExponentialFilter& filter, double 
             std::vector<double> prefilter = fit.prefilter(reach);
             const InterpolationError error = interpolationError(filter, choice.response, prefilter);
             if (error.worst() <= tolerance) {
-                return {SpreadingKernel(width, choice.beta), std::move(prefilter), error.value,
-                        error.gradient};
+                const bool single = roundsLittle(prefilter, tolerance);
+                return {SpreadingKernel(width, choice.beta), std::move(prefilter), single,
+                        error.value, error.gradient};
             }
         }
     }

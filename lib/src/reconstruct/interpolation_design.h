@@ -12,6 +12,9 @@ namespace bandvox {
 struct InterpolationDesign {
     SpreadingKernel kernel;         ///< ψ
     std::vector<double> prefilter;  ///< a_0 ... a_L; a_{-l} = a_l
+    /// That the prefilter's sums may be rounded to floats. One that goes far towards Nyquist has
+    /// terms a thousand times its sum, whose rounding would be seen.
+    bool singlePrecision = false;
     double valueError = 0;          ///< bound for a filtered half-space, density
     double gradientError = 0;       ///< bound, relative to the gradient on its face
 

@@ -35,14 +35,19 @@ class ScreenCells {
   private:
     static constexpr int kSide = 8;  // pixels
 
-    void cover(const openvdb::Vec3d& middle, double radius);
-    void widen(Span& cell, double near, double far);
+    using Cells = std::vector<Span>;
+
+    void coverGroup(const SurfaceBlocks::Group& group, Cells& cells) const;
+    void cover(const openvdb::Vec3d& middle, double radius, Cells& cells) const;
+    static void widen(Span& cell, double near, double far);
 
     const Camera& mCamera;
     int mWidth, mHeight;
     double mMargin;
     int mAcross, mDown;  // cells
-    std::vector<Span> mCells;
+    openvdb::Mat4d mToWorld;
+    double mBlockRadius;  // world units
+    Cells mCells;
 };
 
 }  // namespace bandvox

@@ -6,7 +6,9 @@
 
 #include <openvdb/openvdb.h>
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace bandvox {
 
@@ -34,13 +36,21 @@ class SurfaceBlocks {
     template <typename Visitor>
     void walk(const Ray& ray, double end, const Visitor& visit) const;
 
-    /// Calls `visit(box)` for each node of blocks, voxels, ends included.
-    template <typename Visitor>
-    void forEachBlock(const Visitor& visit) const;
+    /// Blocks in a cube.
+    struct Group {
+        openvdb::Coord first;       ///< its first voxel
+        int side;                   ///< blocks
+        const std::uint64_t* rows;  ///< which of 8³ are there, as a leaf's mask; null if all are
+    };
+    /// All blocks, a group for each node of the tree.
+    std::vector<Group> groups() const;
+
+    /// Voxels along a block.
+    static constexpr int kSide = 4;
 
   private:
     static constexpr int kLog2 = 2;
-    static constexpr int kSide = 1 << kLog2;  // voxels
+    static_assert(kSide == 1 << kLog2);
 
     void mark(const openvdb::CoordBBox& voxels);
 
@@ -54,16 +64,6 @@ template <typename Visitor>
 void SurfaceBlocks::walk(const Ray& ray, double end, const Visitor& visit) const {
     walkBlocks(mBlocks, mBox, inBlocks(ray, kSide, end),
                [&](double t0, double t1, bool /*value*/) { return visit(t0, t1); });
-}
-
-template <typename Visitor>
-void SurfaceBlocks::forEachBlock(const Visitor& visit) const {
-    for (auto block = mBlocks.cbeginValueOn(); block; ++block) {
-        openvdb::CoordBBox box = block.getBoundingBox();
-        box.min() <<= kLog2;
-        box.max() = (box.max().offsetBy(1) << kLog2).offsetBy(-1);
-        visit(box);
-    }
 }
 
 }  // namespace bandvox
