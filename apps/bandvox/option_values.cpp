@@ -4,6 +4,7 @@
 
 #include <bandvox/core/error.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -146,6 +147,19 @@ std::size_t OptionValues::choice(const std::string& name, const std::vector<std:
         if (*given == choices[i]) return i;
     }
     fail(name, "one of " + joined(choices, ", "));
+}
+
+std::vector<bool> OptionValues::choices(const std::string& name,
+                                        const std::vector<std::string>& choices) const {
+    const auto given = text(name);
+    if (!given) return std::vector<bool>(choices.size(), true);
+    std::vector<bool> chosen(choices.size(), false);
+    for (const std::string_view part : split(*given, ',')) {
+        const auto found = std::find(choices.begin(), choices.end(), part);
+        if (found == choices.end()) fail(name, "some of " + joined(choices, ","));
+        chosen[static_cast<std::size_t>(found - choices.begin())] = true;
+    }
+    return chosen;
 }
 
 }  // namespace bandvox::app

@@ -63,6 +63,10 @@ class OptionValues {
     std::size_t choice(const std::string& name, const std::vector<std::string>& choices,
                        std::size_t fallback) const;
 
+    /// Which of `choices` were given, separated by commas; all if the setting was not.
+    std::vector<bool> choices(const std::string& name,
+                              const std::vector<std::string>& choices) const;
+
     /// Throws the error of a reading: the setting's value is not what was expected.
     [[noreturn]] void fail(const std::string& name, const std::string& expected) const;
 

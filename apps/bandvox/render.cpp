@@ -30,6 +30,7 @@ struct RenderRequest {
     std::string output;  // may hold a pattern for the number of a frame
     SceneRequest scene;
     PictureOptions picture;
+    ImageChannels channels;
     Shading shading = Shading::Spectral;
     bool previews = false;
     int turns = 0;            // pictures of a turntable
@@ -86,6 +87,11 @@ RenderRequest parseRender(const CommandLine& line) {
     for (const OptionEntry& entry : pictureEntries()) names.push_back(entry.name);
     request.scene = readScene(line, names);
     request.picture = readPictureOptions(request.scene.picture);
+    request.channels = readChannels(request.scene.picture);
+    if (request.scene.picture.has("channels") && extensionOf(request.output) != ".exr") {
+        throw Error(ErrorKind::Usage, "channels are chosen of an .exr, and '" + request.output +
+                                          "' is none: a .png holds colour alone");
+    }
     request.previews = request.scene.picture.has("preview");
     request.shading = static_cast<Shading>(line.choice("shading", shadingNames(), 0));
     if (request.shading != Shading::Spectral) requirePlain(line, request);
@@ -128,7 +134,7 @@ Image drawFrame(CommandRun& run, const RenderRequest& request, const Scene& scen
                                             [](float depth) { return std::isfinite(depth); });
             if (!isSeen) return;
             AtomicFile file(output.target());
-            writeImage(file, image, run.progress());
+            writeImage(file, image, request.channels, run.progress());
             file.commit();
         };
     }
@@ -160,7 +166,9 @@ void drawSequence(CommandRun& run, const RenderRequest& request) {
         if (request.turns > 0) picture.camera = cameras.at(static_cast<std::size_t>(frame - 1));
         AtomicFile output(withFrame(request.output, frame));
         const Image image = drawFrame(run, request, *scene, picture, output, totals);
-        run.writePart(output, [&](AtomicFile& file) { writeImage(file, image, run.progress()); });
+        run.writePart(output, [&](AtomicFile& file) {
+            writeImage(file, image, request.channels, run.progress());
+        });
     }
     run.count("frames", request.frames.size());
     run.finish();
@@ -229,7 +237,9 @@ void runRender(const CommandLine& line) {
     const Scene scene = loadScene(run, request.scene, 0);
     Totals totals;
     const Image image = drawFrame(run, request, scene, request.picture, output, totals);
-    run.writeOutput(output, [&](AtomicFile& file) { writeImage(file, image, run.progress()); });
+    run.writeOutput(output, [&](AtomicFile& file) {
+        writeImage(file, image, request.channels, run.progress());
+    });
 }
 
 }  // namespace bandvox::app

@@ -19,6 +19,11 @@ constexpr int kMostBounces = 64;
 constexpr int kMostMegabytes = 1 << 20;
 const Range kPositive{.low = 0, .lowOpen = true};
 
+// In the order of ImageChannels.
+std::vector<std::string> channelNames() {
+    return {"color", "depth", "normal", "position"};
+}
+
 std::string inWords(const openvdb::Vec3d& v) {
     return formatNumber(v.x()) + "," + formatNumber(v.y()) + "," + formatNumber(v.z());
 }
@@ -78,6 +83,8 @@ std::vector<OptionEntry> pictureEntries() {
          "Draw a part of the picture: columns L to R and rows T to B, from the upper left corner, "
          "the last ones not included. An .exr says where it belongs.",
          picture},
+        {"channels", 0, "LIST", joined(channelNames(), ","),
+         "What an .exr holds: R G B A, Z, N and P.", picture},
         {"background", 0, "R,G,B", "transparent", "Linear colour behind the objects.", picture},
         {"seed", 0, "N", std::to_string(options.seed), "Of all that is random.", picture},
         {"allow-empty", 0, "", "",
@@ -157,6 +164,11 @@ PictureOptions readPictureOptions(const OptionValues& values) {
         values.choice("volume-method", {"steps", "tracking"}, 0));
     options.volumes.step = values.number("step", {.low = 0.05, .high = 16}, options.volumes.step);
     return options;
+}
+
+ImageChannels readChannels(const OptionValues& values) {
+    const std::vector<bool> chosen = values.choices("channels", channelNames());
+    return {chosen[0], chosen[1], chosen[2], chosen[3]};
 }
 
 }  // namespace bandvox::app

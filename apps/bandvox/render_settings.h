@@ -3,6 +3,7 @@
 #include "option_table.h"
 #include "option_values.h"
 
+#include <bandvox/render/image.h>
 #include <bandvox/render/picture_options.h>
 
 #include <vector>
@@ -15,5 +16,8 @@ std::vector<OptionEntry> pictureEntries();
 /// Reads them. Throws Error(ErrorKind::Usage), and Error(ErrorKind::Input) for a file with a camera
 /// that cannot be used.
 PictureOptions readPictureOptions(const OptionValues& values);
+
+/// What an .exr is to hold.
+ImageChannels readChannels(const OptionValues& values);
 
 }  // namespace bandvox::app

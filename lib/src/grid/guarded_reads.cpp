@@ -1,5 +1,7 @@
 #include "grid/guarded_reads.h"
 
+#include "core/instruction_sets.h"
+
 #include <openvdb/io/Compression.h>
 #include <openvdb/io/io.h>
 
@@ -29,12 +31,16 @@ T numberIn(std::span<const char> bytes, std::size_t offset = 0) {
     return number;
 }
 
-std::uint64_t countBits(std::span<const char> bytes) {
-    std::uint64_t bits = 0;
-    for (const char byte : bytes) {
-        bits += static_cast<std::uint64_t>(std::popcount(static_cast<unsigned char>(byte)));
+// Of a mask, whose bytes are whole words.
+BANDVOX_FOR_EACH_INSTRUCTION_SET
+std::uint64_t countBits(const char* bytes, std::size_t size) {
+    int bits = 0;
+    for (std::size_t i = 0; i < size; i += sizeof(std::uint64_t)) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, bytes + i, sizeof word);
+        bits += std::popcount(word);
     }
-    return bits;
+    return static_cast<std::uint64_t>(bits);
 }
 
 // Size of a value stored in half precision, or 0 for a type that is stored as it is.
@@ -167,7 +173,7 @@ void ReadGuard::followMask(std::span<const char> bytes) {
     // Nodes that can have children have a mask of these, and then one of the active values.
     const bool second = mStage == Stage::Mask && mMaskBytes == bytes.size();
     mChildren = second ? mActive : 0;
-    mActive = countBits(bytes);
+    mActive = countBits(bytes.data(), bytes.size());
     mMaskBytes = bytes.size();
     mStage = Stage::Mask;
     if (!isOldFormat()) return;

@@ -30,7 +30,9 @@ void skipLeaf(std::istream& stream, bool half) {
 
     // What stands for the inactive voxels.
     Value inactive;
-    const auto skipValue = [&] { stream.read(reinterpret_cast<char*>(&inactive), sizeof inactive); };
+    const auto skipValue = [&] {
+        stream.read(reinterpret_cast<char*>(&inactive), sizeof inactive);
+    };
     if (kind == NO_MASK_AND_ONE_INACTIVE_VAL || kind == MASK_AND_ONE_INACTIVE_VAL ||
         kind == MASK_AND_TWO_INACTIVE_VALS) {
         skipValue();
@@ -46,8 +48,8 @@ void skipLeaf(std::istream& stream, bool half) {
         (compression & COMPRESS_ACTIVE_MASK) != 0 && kind != NO_MASK_AND_ALL_VALS;
     const std::int64_t values = activeOnly ? active.countOn() : active.SIZE;
     if (half && values == 0) return;
-    const auto bytes = static_cast<std::int64_t>(
-        half ? sizeof(typename RealToHalf<Value>::HalfT) : sizeof(Value));
+    const auto bytes =
+        static_cast<std::int64_t>(half ? sizeof(typename RealToHalf<Value>::HalfT) : sizeof(Value));
     std::int64_t length = values * bytes;
     if ((compression & (COMPRESS_BLOSC | COMPRESS_ZIP)) != 0) {
         std::int64_t stored = 0;

@@ -21,6 +21,8 @@
 #include <exception>
 #include <ostream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace bandvox {
 
@@ -87,21 +89,25 @@ struct DataChannel {
     int stride;  // floats from pixel to pixel
 };
 
-std::array<DataChannel, 7> dataChannels(const Image& image) {
-    const float* normal = image.normal.data();
-    const float* position = image.position.data();
-    return {{{"Z", image.depth.data(), 1},
-             {"N.X", normal, 3},
-             {"N.Y", normal + 1, 3},
-             {"N.Z", normal + 2, 3},
-             {"P.X", position, 3},
-             {"P.Y", position + 1, 3},
-             {"P.Z", position + 2, 3}}};
+std::vector<DataChannel> dataChannels(const Image& image, const ImageChannels& channels) {
+    std::vector<DataChannel> data;
+    if (channels.depth) data.push_back({"Z", image.depth.data(), 1});
+    if (channels.normal) {
+        const float* normal = image.normal.data();
+        data.insert(data.end(),
+                    {{"N.X", normal, 3}, {"N.Y", normal + 1, 3}, {"N.Z", normal + 2, 3}});
+    }
+    if (channels.position) {
+        const float* position = image.position.data();
+        data.insert(data.end(),
+                    {{"P.X", position, 3}, {"P.Y", position + 1, 3}, {"P.Z", position + 2, 3}});
+    }
+    return data;
 }
 
 constexpr std::array<const char*, 4> kColorChannels{"R", "G", "B", "A"};
 
-Imf::Header makeHeader(const Image& image) {
+Imf::Header makeHeader(const Image& image, const ImageChannels& channels) {
     const Imath::V2i corner(image.left, image.top);
     const Imath::V2i size(image.width - 1, image.height - 1);
     const bool isPart = image.fullWidth > 0 && image.fullHeight > 0;
@@ -112,8 +118,12 @@ Imf::Header makeHeader(const Image& image) {
                        Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
     // Most of what can be saved is saved by the quickest way.
     header.zipCompressionLevel() = 1;
-    for (const char* name : kColorChannels) header.channels().insert(name, Imf::Channel(Imf::HALF));
-    for (const DataChannel& channel : dataChannels(image)) {
+    if (channels.color) {
+        for (const char* name : kColorChannels) {
+            header.channels().insert(name, Imf::Channel(Imf::HALF));
+        }
+    }
+    for (const DataChannel& channel : dataChannels(image, channels)) {
         header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
     }
     for (const auto& [name, value] : image.metadata) setAttribute(header, name, value);
@@ -131,9 +141,10 @@ void insertSlice(Imf::FrameBuffer& buffer, const char* name, Imf::PixelType type
                                    static_cast<std::size_t>(row)));
 }
 
-void writePixels(Imf::OutputFile& file, const Image& image, Progress& progress) {
+void writePixels(Imf::OutputFile& file, const Image& image, const ImageChannels& channels,
+                 Progress& progress) {
     Imf::FrameBuffer buffer;
-    for (const DataChannel& channel : dataChannels(image)) {
+    for (const DataChannel& channel : dataChannels(image, channels)) {
         insertSlice(buffer, channel.name, Imf::FLOAT, channel.values, image, image.top,
                     channel.stride);
     }
@@ -147,7 +158,7 @@ void writePixels(Imf::OutputFile& file, const Image& image, Progress& progress) 
         std::transform(from, from + rows * rowLength, colors.begin(), [](float value) {
             return Imath::half(std::clamp(value, -kLargestHalf, kLargestHalf));
         });
-        for (int c = 0; c < 4; ++c) {
+        for (int c = 0; channels.color && c < 4; ++c) {
             insertSlice(buffer, kColorChannels[c], Imf::HALF, colors.data() + c, image,
                         image.top + top, 4);
         }
@@ -158,12 +169,13 @@ void writePixels(Imf::OutputFile& file, const Image& image, Progress& progress) 
 
 }  // namespace
 
-WriteFailure writeExr(std::ostream& stream, const Image& image, Progress& progress) {
+WriteFailure writeExr(std::ostream& stream, const Image& image, const ImageChannels& channels,
+                      Progress& progress) {
     ExrStream output(stream);
     try {
         Imf::setGlobalThreadCount(threadCount());
-        Imf::OutputFile file(output, makeHeader(image), threadCount());
-        writePixels(file, image, progress);
+        Imf::OutputFile file(output, makeHeader(image, channels), threadCount());
+        writePixels(file, image, channels, progress);
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {

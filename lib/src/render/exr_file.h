@@ -9,8 +9,9 @@
 
 namespace bandvox {
 
-/// Writes a complete picture as OpenEXR, to a stream that is seekable. May throw
+/// Writes the channels of a complete picture as OpenEXR, to a stream that is seekable. May throw
 /// Error(ErrorKind::Interrupted).
-WriteFailure writeExr(std::ostream& stream, const Image& image, Progress& progress);
+WriteFailure writeExr(std::ostream& stream, const Image& image, const ImageChannels& channels,
+                      Progress& progress);
 
 }  // namespace bandvox

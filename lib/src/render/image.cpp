@@ -88,8 +88,26 @@ WriteFailure writePng(std::ostream& stream, const Image& image, Progress& progre
     return imageLibrary().writePng(stream, png);
 }
 
-WriteFailure encode(std::ostream& stream, const Image& image, bool png, Progress& progress) {
-    return png ? writePng(stream, image, progress) : writeExr(stream, image, progress);
+// How a picture is written.
+struct Encoding {
+    bool png;
+    ImageChannels channels;
+};
+
+Encoding encodingFor(const std::filesystem::path& path, const ImageChannels& channels) {
+    const std::string extension = extensionOf(path);
+    if (extension == ".png") return {true, channels};
+    if (extension != ".exr") failExtension(path);
+    if (!channels.color && !channels.depth && !channels.normal && !channels.position) {
+        throw Error(ErrorKind::Usage, "an .exr needs a channel at least, but got none");
+    }
+    return {false, channels};
+}
+
+WriteFailure encode(std::ostream& stream, const Image& image, const Encoding& encoding,
+                    Progress& progress) {
+    return encoding.png ? writePng(stream, image, progress)
+                        : writeExr(stream, image, encoding.channels, progress);
 }
 
 }  // namespace
@@ -99,24 +117,24 @@ bool isImageFile(const std::filesystem::path& path) {
     return extension == ".png" || extension == ".exr";
 }
 
-void writeImage(AtomicFile& file, const Image& image, Progress& progress) {
+void writeImage(AtomicFile& file, const Image& image, const ImageChannels& channels,
+                Progress& progress) {
     const std::filesystem::path& path = file.target();
-    if (!isImageFile(path)) failExtension(path);
+    const Encoding encoding = encodingFor(path, channels);
     requireComplete(image);
-    const bool png = extensionOf(path) == ".png";
     std::ofstream stream = file.open();
     WriteFailure failure;
     if (file.inPlace()) {
         // An encoder goes back to fill in what it knows at the end.
         std::ostringstream memory;
-        failure = encode(memory, image, png, progress);
+        failure = encode(memory, image, encoding, progress);
         const std::string_view bytes = memory.view();
         errno = 0;
         stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
         stream.flush();
         if (!stream) failure.diskError = errno;
     } else {
-        failure = encode(stream, image, png, progress);
+        failure = encode(stream, image, encoding, progress);
     }
     if (failure.diskError == 0) {
         errno = 0;
@@ -130,11 +148,12 @@ void writeImage(AtomicFile& file, const Image& image, Progress& progress) {
     }
 }
 
-void writeImage(const std::filesystem::path& path, const Image& image) {
-    if (!isImageFile(path)) failExtension(path);
+void writeImage(const std::filesystem::path& path, const Image& image,
+                const ImageChannels& channels) {
+    encodingFor(path, channels);
     requireComplete(image);
     AtomicFile file(path);
-    writeImage(file, image);
+    writeImage(file, image, channels);
     file.commit();
 }
 

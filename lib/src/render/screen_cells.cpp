@@ -65,19 +65,20 @@ ScreenCells::ScreenCells(const Camera& camera, int width, int height, double mar
     }
 }
 
-// Marks the cells in which a group can be seen, in cubes of as many blocks as are about as wide as
-// a cell.
+// Marks the cells in which a group can be seen, in cubes of as many blocks as are not much wider
+// than a cell.
 void ScreenCells::coverGroup(const SurfaceBlocks::Group& group, Cells& cells) const {
     const auto middleOf = [&](const openvdb::Vec3d& first, int side) {
         return mToWorld.transform(first + openvdb::Vec3d(0.5 * side * SurfaceBlocks::kSide));
     };
     const openvdb::Vec3d first = group.first.asVec3d();
     int side = group.side;
+    constexpr double kWidest = 2;  // cells
     if (group.rows) {
         const double nearest = mCamera.depth(middleOf(first, side)) - side * mBlockRadius;
         const auto isWide = [&](int blocks) {
             return !(nearest > 0) ||
-                   2 * blocks * mBlockRadius * mCamera.pixelsPerLength(nearest) > kSide;
+                   2 * blocks * mBlockRadius * mCamera.pixelsPerLength(nearest) > kWidest * kSide;
         };
         while (side > 1 && isWide(side)) side /= 2;
     }
@@ -91,7 +92,8 @@ void ScreenCells::coverGroup(const SurfaceBlocks::Group& group, Cells& cells) co
                     for (int j = y; j < y + side; ++j) found |= group.rows[i] >> (8 * j + z) & row;
                 }
                 if (found == 0) continue;
-                const openvdb::Vec3d corner = first + SurfaceBlocks::kSide * openvdb::Vec3d(x, y, z);
+                const openvdb::Vec3d corner =
+                    first + SurfaceBlocks::kSide * openvdb::Vec3d(x, y, z);
                 cover(middleOf(corner, side), side * mBlockRadius, cells);
             }
         }

@@ -33,17 +33,27 @@ struct Image {
     std::vector<std::pair<std::string, ImageAttribute>> metadata;
 };
 
+/// What is kept of a picture in an .exr.
+struct ImageChannels {
+    bool color = true;     ///< R G B A, half
+    bool depth = true;     ///< Z, float
+    bool normal = true;    ///< N.X N.Y N.Z, float
+    bool position = true;  ///< P.X P.Y P.Z, float
+};
+
 /// Extensions that writeImage takes, lower case with the dot.
 bool isImageFile(const std::filesystem::path& path);
 
 /// Writes a picture, whole or not at all. `.png`: 8-bit sRGB with alpha, by OpenImageIO's colour
-/// management. `.exr`: linear half R G B A, and float Z, N.X N.Y N.Z, P.X P.Y P.Z; of a part of a
-/// larger picture the data window, in that one's display window.
+/// management. `.exr`: the channels that are asked for, linear; of a part of a larger picture the data
+/// window, in that one's display window.
 /// Throws Error(ErrorKind::Runtime) if it cannot be written, Error(ErrorKind::Usage) for another
-/// extension.
-void writeImage(const std::filesystem::path& path, const Image& image);
+/// extension, or if no channel is asked for.
+void writeImage(const std::filesystem::path& path, const Image& image,
+                const ImageChannels& channels = {});
 
 /// The same to a file that the caller commits. Throws Error(ErrorKind::Interrupted) besides.
-void writeImage(AtomicFile& file, const Image& image, Progress& progress = silentProgress());
+void writeImage(AtomicFile& file, const Image& image, const ImageChannels& channels = {},
+                Progress& progress = silentProgress());
 
 }  // namespace bandvox
