@@ -72,6 +72,13 @@ void readFrames(const CommandLine& line, RenderRequest& request) {
                                           "'; expected a place for the number of a frame in it, "
                                           "as in name.####.png");
     }
+    for (const int frame : request.frames) {
+        const std::string picture = withFrame(request.output, frame);
+        if (line.text("stats") == picture) {
+            line.fail("stats",
+                      "a file of its own: this is the picture of frame " + std::to_string(frame));
+        }
+    }
     if (request.turns > 0 &&
         (request.frames.front() < 1 || request.frames.back() > request.turns)) {
         line.fail("frames", "from 1 to no more than the " + std::to_string(request.turns) +

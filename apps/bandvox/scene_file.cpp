@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <fstream>
 #include <optional>
+#include <set>
 #include <sstream>
 
 namespace bandvox::app {
@@ -34,16 +35,46 @@ std::optional<std::string> textOf(const std::string& name, const nlohmann::json&
     return joined(parts, name == "res" ? "x" : ",");
 }
 
+// Told of what a parser meets, keeps the first name that an object has twice, of which JSON does
+// not say which counts.
+class RepeatedNames {
+  public:
+    bool note(nlohmann::json::parse_event_t event, const nlohmann::json& parsed) {
+        using Event = nlohmann::json::parse_event_t;
+        if (event == Event::object_start) {
+            mNames.emplace_back();
+        } else if (event == Event::object_end) {
+            mNames.pop_back();
+        } else if (event == Event::key) {
+            const auto name = parsed.get<std::string>();
+            if (!mNames.back().insert(name).second && !mRepeated) mRepeated = name;
+        }
+        return true;
+    }
+
+    const std::optional<std::string>& repeated() const { return mRepeated; }
+
+  private:
+    std::vector<std::set<std::string>> mNames;  // of the objects around, outermost first
+    std::optional<std::string> mRepeated;
+};
+
 }  // namespace
 
 SceneFile::SceneFile(const std::string& path)
     : mPath(path), mJson(std::make_unique<nlohmann::json>()) {
     std::ifstream stream(path);
     if (!stream) fail("it cannot be opened for reading");
+    RepeatedNames names;
     try {
-        *mJson = nlohmann::json::parse(stream);
+        *mJson = nlohmann::json::parse(
+            stream, [&names](int /*depth*/, nlohmann::json::parse_event_t event,
+                             nlohmann::json& parsed) { return names.note(event, parsed); });
     } catch (const nlohmann::json::exception& error) {
         fail(std::string("it is no JSON (") + error.what() + ")");
+    }
+    if (names.repeated()) {
+        fail("there is '" + *names.repeated() + "' twice in one object; expected it once");
     }
     if (!mJson->is_object()) fail("it holds no scene; expected { \"objects\": [ ... ] }");
     for (const auto& [name, value] : mJson->items()) {

@@ -136,6 +136,7 @@ TEST_F(RenderScene, RefusesSceneFilesThatAreNone) {
         {R"({"objects": []})", "objects"},
         {R"({"object": []})", "object"},
         {R"({"objects": [{}]})", "file"},
+        {R"({"objects": [{"file": "sphere.vdb", "iso": 0.4, "iso": 0.5}]})", "'iso' twice"},
         {R"({"objects": [{"file": "sphere.vdb", "colour": [1, 1, 1]}]})", "did you mean 'color'"},
         {R"({"objects": [{"file": "sphere.vdb", "color": [1, 1]}]})", "three numbers"},
         {R"({"objects": [{"file": "sphere.vdb", "roughness": 2}]})", "roughness"},
@@ -155,6 +156,9 @@ TEST_F(RenderScene, RefusesSceneFilesThatAreNone) {
     }
     writeText(*sFolder / "good.json", R"({"objects": [{"file": "sphere.vdb"}]})");
     EXPECT_EQ(render({"good.json", "sphere.vdb", "-o", "bad.png"}).status, 2);
+    EXPECT_EQ(
+        render({"cube.vdb", "-o", "f.###.png", "--turntable", "3", "--stats", "f.002.png"}).status,
+        2);
     EXPECT_EQ(render({"good.json", "-o", "bad.png", "--color", "1,1,1"}).status, 2);
 }
 
@@ -267,6 +271,20 @@ TEST_F(RenderScene, ACropIsAPartOfThePicture) {
         EXPECT_EQ(render({"cube.vdb", "-o", "x.png", "--res", "40x30", "--crop", crop}).status, 2)
             << crop;
     }
+}
+
+TEST_F(RenderScene, ChannelsAreChosen) {
+    ASSERT_EQ(
+        render({"cube.vdb", "-o", "some.exr", "--res", "9x7", "--channels", "depth,normal"}).status,
+        0);
+    EXPECT_EQ(read("some.exr").spec.channelnames,
+              (std::vector<std::string>{"Z", "N.X", "N.Y", "N.Z"}));
+    for (const char* channels : {"z", "depth,", "color depth"}) {
+        const RunResult result = render({"cube.vdb", "-o", "x.exr", "--channels", channels});
+        EXPECT_EQ(result.status, 2) << channels;
+        EXPECT_NE(result.err.find("color,depth,normal,position"), std::string::npos) << result.err;
+    }
+    EXPECT_EQ(render({"cube.vdb", "-o", "x.png", "--channels", "color"}).status, 2);
 }
 
 TEST_F(RenderScene, ATurntableGoesOnceAround) {

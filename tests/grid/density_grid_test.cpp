@@ -1,10 +1,12 @@
 #include <bandvox/core/error.h>
+#include <bandvox/core/parallel.h>
 #include <bandvox/grid/density_grid.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <random>
 #include <string>
@@ -176,6 +178,93 @@ TEST_F(DensityGridFile, TruncatedFilesAreRefused) {
         fs::resize_file(path, cut);
         EXPECT_EQ(kindOfReadError(), ErrorKind::Input) << cut << " of " << size;
     }
+}
+
+// Grids with more leaves than one task reads.
+template <typename GridT>
+void expectManyLeavesComeBack(const fs::path& path, VdbWriteOptions options) {
+    std::mt19937 random(17);
+    auto grid = GridT::create(typename GridT::ValueType(0));
+    for (int i = 0; i < 3000; ++i) {
+        const Coord origin(8 * (i % 20), 8 * (i / 20 % 15), 8 * (i / 300) - 40);
+        const int voxels = i % 5 == 0 ? 512 : static_cast<int>(random() % 40);
+        for (int v = 0; v < voxels; ++v) {
+            const Coord at = origin + Coord(v & 7, v >> 3 & 7, v >> 6);
+            grid->tree().setValue(at, typename GridT::ValueType(float(random() % 2048) / 1024));
+        }
+        if (voxels == 0) grid->tree().touchLeaf(origin);
+    }
+    grid->setName("many");
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(0.25));
+    grid->insertMeta("note", openvdb::StringMetadata("kept"));
+    const auto other = grid->deepCopy();
+    other->setName("second");
+    writeVdb(path, {grid, other}, options);
+    for (const int threads : {1, 4}) {
+        const ThreadLimit limit(threads);
+        const openvdb::GridPtrVec read = readVdb(path);
+        ASSERT_EQ(read.size(), 2U);
+        for (const openvdb::GridBase::Ptr& one : read) {
+            const auto typed = openvdb::gridPtrCast<GridT>(one);
+            ASSERT_TRUE(typed);
+            EXPECT_TRUE(typed->tree().hasSameTopology(grid->tree()));
+            EXPECT_EQ(typed->transform(), grid->transform());
+            EXPECT_EQ(typed->template metaValue<std::string>("note"), "kept");
+            auto leaf = grid->tree().cbeginLeaf();
+            for (auto found = typed->tree().cbeginLeaf(); found; ++found, ++leaf) {
+                ASSERT_EQ(found->origin(), leaf->origin());
+                ASSERT_EQ(found->buffer(), leaf->buffer()) << leaf->origin();
+            }
+        }
+        EXPECT_EQ(read[0]->getName(), "many");
+        EXPECT_EQ(read[1]->getName(), "second");
+    }
+}
+
+TEST_F(DensityGridFile, ManyLeavesComeBackWhoeverReadsThem) {
+    using Compression = VdbWriteOptions::Compression;
+    for (const Compression compression :
+         {Compression::Blosc, Compression::Zip, Compression::None}) {
+        for (const bool half : {false, true}) {
+            VdbWriteOptions options;
+            options.compression = compression;
+            options.half = half;
+            SCOPED_TRACE(std::to_string(static_cast<int>(compression)) + (half ? " half" : ""));
+            expectManyLeavesComeBack<openvdb::FloatGrid>(path, options);
+            expectManyLeavesComeBack<openvdb::DoubleGrid>(path, options);
+            expectManyLeavesComeBack<openvdb::Vec3SGrid>(path, options);
+        }
+    }
+}
+
+TEST_F(DensityGridFile, DamageInAnyOfManyLeavesIsNoticed) {
+    auto grid = openvdb::FloatGrid::create(0.0F);
+    std::mt19937 random(23);
+    for (int i = 0; i < 400000; ++i) {
+        grid->tree().setValue(Coord(i % 80, i / 80 % 80, i / 6400),
+                              1e-6F * static_cast<float>(random() % 1000000));
+    }
+    writeVdb(path, {grid});
+    std::string bytes(fs::file_size(path), '\0');
+    std::ifstream(path, std::ios::binary)
+        .read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    // Chunks that Blosc made begin with a length of 8 bytes and its version.
+    int damaged = 0;
+    for (std::size_t i = bytes.size() / 4; i + 40 < bytes.size(); ++i) {
+        std::int64_t length = 0;
+        std::int32_t inside = 0;
+        std::memcpy(&length, &bytes[i], sizeof length);
+        std::memcpy(&inside, &bytes[i + 20], sizeof inside);
+        if (length < 100 || length > 4000 || inside != length) continue;
+        if (++damaged % 50 != 0) continue;
+        for (const std::int64_t wrong : {length - 1, length + 1, -length, std::int64_t(1) << 40}) {
+            std::string changed = bytes;
+            std::memcpy(&changed[i], &wrong, sizeof wrong);
+            std::ofstream(path, std::ios::binary) << changed;
+            EXPECT_EQ(kindOfReadError(), ErrorKind::Input) << i << ' ' << wrong;
+        }
+    }
+    EXPECT_GT(damaged, 500);
 }
 
 // Lengths that the middle of a file does not mean are no overruns.

@@ -108,6 +108,35 @@ TEST_F(ImageFile, WritesEveryChannelOfAnExr) {
     EXPECT_EQ(channels.size(), 11u);
 }
 
+TEST_F(ImageFile, WritesTheChannelsAskedFor) {
+    using bandvox::ImageChannels;
+    struct Case {
+        ImageChannels channels;
+        std::vector<std::string> names;  // in the order of the alphabet
+    };
+    const Case cases[] = {{{true, false, false, false}, {"A", "B", "G", "R"}},
+                          {{false, true, false, false}, {"Z"}},
+                          {{true, true, false, false}, {"A", "B", "G", "R", "Z"}},
+                          {{false, false, true, true}, {"N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z"}}};
+    const Image image = sampleImage(7, 5);
+    for (const Case& asked : cases) {
+        const fs::path path = mFolder / "some.exr";
+        writeImage(path, image, asked.channels);
+        const auto input = OIIO::ImageInput::open(path.string());
+        ASSERT_TRUE(input) << OIIO::geterror();
+        std::vector<std::string> names = input->spec().channelnames;
+        std::sort(names.begin(), names.end());
+        EXPECT_EQ(names, asked.names);
+        std::vector<float> data(std::size_t(35) * names.size());
+        ASSERT_TRUE(input->read_image(0, 0, 0, -1, OIIO::TypeDesc::FLOAT, data.data()));
+        if (names.size() == 1) EXPECT_EQ(data, image.depth);
+        // A .png has colour whatever is asked for.
+        writeImage(mFolder / "some.png", image, asked.channels);
+    }
+    EXPECT_THROW(writeImage(mFolder / "none.exr", image, {false, false, false, false}), Error);
+    EXPECT_FALSE(fs::exists(mFolder / "none.exr"));
+}
+
 TEST_F(ImageFile, WritesAPngInSrgbWithAlphaBeside) {
     const Image image = sampleImage(16, 16);
     writeImage(mFolder / "picture.png", image);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -62,6 +63,42 @@ TEST(SurfaceBlocks, MeetsEveryPlaceNearAHighValue) {
                 ASSERT_GE(all[s].first, all[s - 1].second - 1e-9) << "out of order";
             }
         }
+    }
+}
+
+// Blocks are those of the voxels beside a high one, in all directions, and no others.
+TEST(SurfaceBlocks, AreThoseAroundHighValues) {
+    std::mt19937 random(9);
+    for (int round = 0; round < 20; ++round) {
+        auto grid = openvdb::FloatGrid::create(0);
+        std::set<Coord> expected;
+        const auto expect = [&](const Coord& at) {
+            for (int i = 0; i < 27; ++i) {
+                expected.insert(at.offsetBy(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1) >> 2);
+            }
+        };
+        for (int i = 0; i < 3; ++i) {
+            const Coord at(random() % 60 - 30, random() % 60 - 30, random() % 60 - 30);
+            grid->tree().setValue(at, 0.6F);
+            grid->tree().setValue(at.offsetBy(2, 0, 1), 0.4F);
+            expect(at);
+        }
+        const Coord full(64, 0, 8 * (round % 5));  // a leaf, or a tile
+        if (round % 2 == 0) grid->fill(openvdb::CoordBBox::createCube(full, 8), 1.0F);
+        if (round % 2 == 1) grid->tree().addTile(1, full, 1.0F, true);
+        if (round % 4 == 0) grid->tree().voxelizeActiveTiles();
+        for (int v = 0; v < 512; ++v) expect(full + Coord(v & 7, v >> 3 & 7, v >> 6));
+
+        std::set<Coord> found;
+        const SurfaceBlocks blocks(*grid, 0.5);
+        for (const SurfaceBlocks::Group& group : blocks.groups()) {
+            ASSERT_NE(group.rows, nullptr);
+            for (int b = 0; b < 512; ++b) {
+                if ((group.rows[b >> 6] >> (b & 63) & 1) == 0) continue;
+                found.insert((group.first >> 2) + Coord(b >> 6, b >> 3 & 7, b & 7));
+            }
+        }
+        EXPECT_EQ(found, expected) << round;
     }
 }
 

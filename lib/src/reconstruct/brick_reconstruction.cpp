@@ -1,3 +1,4 @@
+#include "core/rounding.h"
 #include "core/words.h"
 #include "reconstruct/brick_cache.h"
 #include "reconstruct/coefficient_brick.h"
@@ -51,7 +52,7 @@ class BrickProbe final : public DensityProbe {
         openvdb::Coord place;
         for (int axis = 0; axis < 3; ++axis) {
             if (!(std::abs(index[axis]) < kFarthest)) return nullptr;
-            place[axis] = static_cast<int>(std::floor(index[axis] / CoefficientBrick::kSide));
+            place[axis] = floorToInt(index[axis] / CoefficientBrick::kSide);
             // A place a hair below 0 would round up to the end of its brick.
             local[axis] =
                 std::min(index[axis] - double(place[axis]) * CoefficientBrick::kSide, kLastPlace);

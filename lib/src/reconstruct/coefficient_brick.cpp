@@ -1,9 +1,9 @@
 #include "reconstruct/coefficient_brick.h"
 
 #include "core/instruction_sets.h"
+#include "core/lanes.h"
 
 #include <algorithm>
-#include <limits>
 #include <span>
 
 namespace bandvox {
@@ -21,19 +21,16 @@ int pitchOf(const SpreadingKernel& kernel) {
     return CoefficientBrick::kSide + kernel.paddedWidth();
 }
 
-struct ValueRange {
-    float low, high;
-};
-
-// Copies the cube of `side` voxels from `origin` on, z fastest, a leaf at a time.
-ValueRange copyLattice(const openvdb::FloatGrid& grid, const openvdb::Coord& origin, int side,
-                       std::vector<float>& lattice) {
+// Copies the cube of `side` voxels from `origin` on, z fastest, a leaf at a time. Returns true if
+// all are the same.
+bool copyLattice(const openvdb::FloatGrid& grid, const openvdb::Coord& origin, int side,
+                 std::vector<float>& lattice) {
     lattice.resize(static_cast<std::size_t>(side) * side * side);
     const openvdb::CoordBBox cube = openvdb::CoordBBox::createCube(origin, side);
     const openvdb::Coord firstLeaf = cube.min() & ~(kLeafSide - 1);
     auto accessor = grid.getConstAccessor();
-    ValueRange range{std::numeric_limits<float>::infinity(),
-                     -std::numeric_limits<float>::infinity()};
+    const float first = accessor.getValue(origin);
+    bool isUniform = true;
     openvdb::Coord block;
     for (block[0] = firstLeaf[0]; block[0] <= cube.max()[0]; block[0] += kLeafSide) {
         for (block[1] = firstLeaf[1]; block[1] <= cube.max()[1]; block[1] += kLeafSide) {
@@ -42,8 +39,10 @@ ValueRange copyLattice(const openvdb::FloatGrid& grid, const openvdb::Coord& ori
                 part.intersect(cube);
                 const Leaf* leaf = accessor.probeConstLeaf(block);
                 const float* values = leaf ? leaf->buffer().data() : nullptr;
-                const float tile = values ? 0.0F : accessor.getValue(block);
+                const float tile = values ? first : accessor.getValue(block);
+                isUniform = isUniform && tile == first;
                 const int length = part.dim()[2];
+                int different = 0;
                 for (int x = part.min()[0]; x <= part.max()[0]; ++x) {
                     for (int y = part.min()[1]; y <= part.max()[1]; ++y) {
                         const openvdb::Coord start(x, y, part.min()[2]);
@@ -56,21 +55,15 @@ ValueRange copyLattice(const openvdb::FloatGrid& grid, const openvdb::Coord& ori
                             continue;
                         }
                         const float* from = values + Leaf::coordToOffset(start);
-                        for (int z = 0; z < length; ++z) {
-                            row[z] = from[z];
-                            range.low = std::min(range.low, from[z]);
-                            range.high = std::max(range.high, from[z]);
-                        }
+                        std::copy_n(from, length, row);
+                        for (int z = 0; z < length; ++z) different |= from[z] != first ? 1 : 0;
                     }
                 }
-                if (!values) {
-                    range.low = std::min(range.low, tile);
-                    range.high = std::max(range.high, tile);
-                }
+                isUniform = isUniform && different == 0;
             }
         }
     }
-    return range;
+    return isUniform;
 }
 
 // `count` rows of `length` outputs each, so far apart.
@@ -78,25 +71,45 @@ struct ConvolutionRows {
     std::size_t count, length, inPitch, outPitch;
 };
 
-// out[p] = Σ_l a_l in[p + (L + l)·stride] for kCount outputs from p on.
-template <int kCount, typename Sum>
+// out[p] = Σ_l a_l in[p + (L + l)·stride] for kCount outputs from p on, in double precision.
+template <int kCount>
 [[gnu::always_inline]] inline void convolveSome(const float* middle, float* out, std::size_t stride,
-                                                std::span<const Sum> taps) {
-    Sum sum[kCount];
+                                                std::span<const double> taps) {
+    double sum[kCount];
     for (int p = 0; p < kCount; ++p) sum[p] = taps[0] * middle[p];
     for (std::size_t l = 1; l < taps.size(); ++l) {
         const float* before = middle - l * stride;
         const float* after = middle + l * stride;
-        for (int p = 0; p < kCount; ++p) sum[p] += taps[l] * (Sum(before[p]) + after[p]);
+        for (int p = 0; p < kCount; ++p) sum[p] += taps[l] * (double(before[p]) + after[p]);
     }
     for (int p = 0; p < kCount; ++p) out[p] = static_cast<float>(sum[p]);
 }
 
+// The same in single precision.
+template <int kCount>
+[[gnu::always_inline]] inline void convolveSome(const float* middle, float* out, std::size_t stride,
+                                                std::span<const float> taps) {
+    constexpr int kLanes = 8, kVectors = kCount / kLanes;
+    Lanes<kLanes> sum[kVectors], before, after;
+    for (int p = 0; p < kVectors; ++p) {
+        loadLanes<kLanes>(middle + p * kLanes, before);
+        sum[p] = taps[0] * before;
+    }
+    for (std::size_t l = 1; l < taps.size(); ++l) {
+        for (int p = 0; p < kVectors; ++p) {
+            loadLanes<kLanes>(middle - l * stride + p * kLanes, before);
+            loadLanes<kLanes>(middle + l * stride + p * kLanes, after);
+            sum[p] += taps[l] * (before + after);
+        }
+    }
+    for (int p = 0; p < kVectors; ++p) storeLanes<kLanes>(sum[p], out + p * kLanes);
+}
+
 // Convolves along the axis whose neighbours are `stride` apart.
-template <typename Sum>
+template <typename Tap>
 [[gnu::always_inline]] inline void convolveRows(const float* in, float* out,
                                                 const ConvolutionRows& rows, std::size_t stride,
-                                                std::span<const Sum> taps) {
+                                                std::span<const Tap> taps) {
     constexpr std::size_t kMany = 32, kFew = 8;
     const std::size_t reach = taps.size() - 1;
     for (std::size_t row = 0; row < rows.count; ++row) {
@@ -142,10 +155,9 @@ CoefficientBrick::CoefficientBrick(const openvdb::FloatGrid& grid, const openvdb
     const int reach = design.reach();
     const int side = mNodes + 2 * reach;
     const openvdb::Coord origin(brick[0] * kSide, brick[1] * kSide, brick[2] * kSide);
-    const ValueRange range =
-        copyLattice(grid, origin.offsetBy(firstNode(design.kernel) - reach), side, scratch.lattice);
-    if (range.low == range.high) {
-        mConstant = range.low;
+    if (copyLattice(grid, origin.offsetBy(firstNode(design.kernel) - reach), side,
+                    scratch.lattice)) {
+        mConstant = scratch.lattice.front();
         return;
     }
 
@@ -159,29 +171,31 @@ CoefficientBrick::CoefficientBrick(const openvdb::FloatGrid& grid, const openvdb
             convolve(in, out, rows, stride, design.prefilter);
         }
     };
-    const std::size_t rowLength = side, plane = rowLength * side, nodes = mNodes;
-    const auto pitch = static_cast<std::size_t>(mPitch);
+    const std::size_t rowLength = side, plane = rowLength * side, nodes = mNodes, pitch = mPitch;
     scratch.filtered.resize(nodes * plane);
     pass(scratch.lattice.data(), scratch.filtered.data(), {1, nodes * plane, 0, 0}, plane);
     pass(scratch.filtered.data(), scratch.lattice.data(),
          {nodes, nodes * rowLength, plane, nodes * rowLength}, rowLength);
-    mCoefficients.assign(nodes * nodes * pitch, 0.0F);
-    pass(scratch.lattice.data(), mCoefficients.data(), {nodes * nodes, nodes, rowLength, pitch}, 1);
+    mCoefficients = std::make_unique_for_overwrite<float[]>(nodes * nodes * pitch);
+    pass(scratch.lattice.data(), mCoefficients.get(), {nodes * nodes, nodes, rowLength, pitch}, 1);
+    for (std::size_t row = 0; row < nodes * nodes; ++row) {
+        std::fill_n(&mCoefficients[row * pitch + nodes], pitch - nodes, 0.0F);
+    }
 }
 
 double CoefficientBrick::value(const SpreadingKernel& kernel, const openvdb::Vec3d& local) const {
-    return mCoefficients.empty() ? mConstant : sumValue(nodes(), kernel, local);
+    return !mCoefficients ? mConstant : sumValue(nodes(), kernel, local);
 }
 
 DensityAt CoefficientBrick::evaluate(const SpreadingKernel& kernel,
                                      const openvdb::Vec3d& local) const {
-    if (mCoefficients.empty()) return {mConstant, {0, 0, 0}};
+    if (!mCoefficients) return {mConstant, {0, 0, 0}};
     return sumGradient(nodes(), kernel, local);
 }
 
 DensityExpansion CoefficientBrick::expand(const SpreadingKernel& kernel,
                                           const openvdb::Vec3d& local) const {
-    if (mCoefficients.empty()) return {mConstant, {0, 0, 0}, openvdb::Mat3d::zero()};
+    if (!mCoefficients) return {mConstant, {0, 0, 0}, openvdb::Mat3d::zero()};
     return sumHessian(nodes(), kernel, local);
 }
 

@@ -8,6 +8,7 @@
 #include <openvdb/openvdb.h>
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace bandvox {
@@ -40,12 +41,12 @@ class CoefficientBrick {
     static std::size_t bytes(const SpreadingKernel& kernel);
 
   private:
-    BrickNodes nodes() const { return {mCoefficients.data(), mNodes, mPitch}; }
+    BrickNodes nodes() const { return {mCoefficients.get(), mNodes, mPitch}; }
 
-    int mNodes;                        // along x and y
-    int mPitch;                        // along z, with room for the kernel's padding
-    float mConstant = 0;               // of a brick without coefficients
-    std::vector<float> mCoefficients;  // [mNodes][mNodes][mPitch]; empty if all are the same
+    int mNodes;                              // along x and y
+    int mPitch;                              // along z, with room for the kernel's padding
+    float mConstant = 0;                     // of a brick without coefficients
+    std::unique_ptr<float[]> mCoefficients;  // [mNodes][mNodes][mPitch]; none if all are the same
 };
 
 }  // namespace bandvox

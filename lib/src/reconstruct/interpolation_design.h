@@ -15,8 +15,8 @@ struct InterpolationDesign {
     /// That the prefilter's sums may be rounded to floats. One that goes far towards Nyquist has
     /// terms a thousand times its sum, whose rounding would be seen.
     bool singlePrecision = false;
-    double valueError = 0;          ///< bound for a filtered half-space, density
-    double gradientError = 0;       ///< bound, relative to the gradient on its face
+    double valueError = 0;     ///< bound for a filtered half-space, density
+    double gradientError = 0;  ///< bound, relative to the gradient on its face
 
     int reach() const { return static_cast<int>(prefilter.size()) - 1; }
 };

@@ -1,5 +1,7 @@
 #include "render/ray_march.h"
 
+#include "core/rounding.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -86,7 +88,9 @@ class March {
     double clearByNode(double t) {
         if (!mNodes) return 0;
         const openvdb::Vec3d place = mRay.origin + t * mRay.direction;
-        const double above = mSide * (mNodes->getValue(openvdb::Coord::round(place)) - mField.iso);
+        const openvdb::Coord node(floorToInt(place[0] + 0.5), floorToInt(place[1] + 0.5),
+                                  floorToInt(place[2] + 0.5));
+        const double above = mSide * (mNodes->getValue(node) - mField.iso);
         return above < 0 ? (*mField.clear)(above)-kFarthestNode : 0;
     }
 

@@ -1,6 +1,7 @@
 #include "render/surface_blocks.h"
 
 #include "core/instruction_sets.h"
+#include "core/lanes.h"
 
 #include <bandvox/core/parallel.h>
 
@@ -61,13 +62,23 @@ constexpr std::array<std::uint8_t, 256> kNearRows = nearRows();
 BANDVOX_FOR_EACH_INSTRUCTION_SET
 LeafSummary summarize(const float* values, float threshold) {
     // What is the same for all of a leaf is common.
+    constexpr int kLanes = 16;
     LeafSummary found;
-    float minimum = std::numeric_limits<float>::max();
+    Lanes<kLanes> some, highest, lowest;
+    loadLanes<kLanes>(values, highest);
+    lowest = highest;
     int large = 0;
-    for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
-        found.maximum = values[i] > found.maximum ? values[i] : found.maximum;
-        minimum = values[i] < minimum ? values[i] : minimum;
-        large |= std::abs(values[i]) <= kLargest ? 0 : 1;
+    for (openvdb::Index i = 0; i < Leaf::SIZE; i += kLanes) {
+        loadLanes<kLanes>(values + i, some);
+        highest = some > highest ? some : highest;
+        lowest = some < lowest ? some : lowest;
+        for (int l = 0; l < kLanes; ++l) large |= std::abs(values[i + l]) <= kLargest ? 0 : 1;
+    }
+    float minimum = lowest[0];
+    found.maximum = highest[0];
+    for (int l = 1; l < kLanes; ++l) {
+        found.maximum = std::max(found.maximum, highest[l]);
+        minimum = std::min(minimum, lowest[l]);
     }
     found.finite = large == 0;
     if (!(found.maximum >= threshold)) return found;

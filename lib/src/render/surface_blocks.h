@@ -42,7 +42,7 @@ class SurfaceBlocks {
         int side;                   ///< blocks
         const std::uint64_t* rows;  ///< which of 8³ are there, as a leaf's mask; null if all are
     };
-    /// All blocks, a group for each node of the tree.
+    /// All blocks, a group for each node of the tree; valid as long as this object.
     std::vector<Group> groups() const;
 
     /// Voxels along a block.
