@@ -51,8 +51,7 @@ Deviation deviation(const SurfaceMesh& surface, const openvdb::FloatGrid& grid,
     const auto probe = field.probe();
     for (std::size_t i = 0; i < surface.mesh.points.size(); ++i) {
         const DensityAt at = probe->evaluate(grid.worldToIndex(surface.mesh.points[i]));
-        worst.distance =
-            std::max(worst.distance, std::abs(at.value - iso) / at.gradient.length());
+        worst.distance = std::max(worst.distance, std::abs(at.value - iso) / at.gradient.length());
         const Vec3d outward = -grid.transform().baseMap()->applyIJT(at.gradient).unit();
         const double cosine = std::clamp(outward.dot(Vec3d(surface.normals[i])), -1.0, 1.0);
         worst.angle = std::max(worst.angle, std::acos(cosine));
@@ -110,10 +109,12 @@ TEST(DensityToMesh, ShapesAreClosedAndAccurate) {
         const Deviation worst = deviation(result.surface, *density.grid, *field, 0.5);
         EXPECT_LT(worst.distance, 1e-3);
         EXPECT_LT(worst.angle, 1e-2);
-        printf("%s: %zu points %zu triangles %zu ambiguous, distance %g angle %g volume %g of %g pieces %zu euler %ld\n",
-               shape.name, mesh.points.size(), mesh.triangles.size(), result.ambiguousFaces,
-               worst.distance, worst.angle, enclosedVolume(mesh), density.metadata.gridVolume,
-               pieces(mesh), eulerNumber(mesh));
+        printf(
+            "%s: %zu points %zu triangles %zu ambiguous, distance %g angle %g volume %g of %g "
+            "pieces %zu euler %ld\n",
+            shape.name, mesh.points.size(), mesh.triangles.size(), result.ambiguousFaces,
+            worst.distance, worst.angle, enclosedVolume(mesh), density.metadata.gridVolume,
+            pieces(mesh), eulerNumber(mesh));
     }
 }
 
@@ -135,9 +136,11 @@ TEST(DensityToMesh, RandomWavesAreManifoldWhateverTheCells) {
                 EXPECT_EQ(flaw(result.surface.mesh), "");
                 EXPECT_GT(enclosedVolume(result.surface.mesh), 0);
                 ambiguous += result.ambiguousFaces;
-                printf("seed %u highest %g: %zu triangles, %zu ambiguous faces of %zu cells, meetings %zu\n", seed,
-                       highest, result.surface.mesh.triangles.size(), result.ambiguousFaces,
-                       result.cells, meetings(result.surface.mesh));
+                printf(
+                    "seed %u highest %g: %zu triangles, %zu ambiguous faces of %zu cells, meetings "
+                    "%zu\n",
+                    seed, highest, result.surface.mesh.triangles.size(), result.ambiguousFaces,
+                    result.cells, meetings(result.surface.mesh));
             }
         }
     }

@@ -64,7 +64,8 @@ double enclosedVolume(const Mesh& mesh) {
     double sum = 0;
     for (const openvdb::Vec3I& t : mesh.triangles) {
         const Vec3d a = mesh.points[t[0]] - mesh.points[0];
-        sum += a.dot((mesh.points[t[1]] - mesh.points[0]).cross(mesh.points[t[2]] - mesh.points[0]));
+        sum +=
+            a.dot((mesh.points[t[1]] - mesh.points[0]).cross(mesh.points[t[2]] - mesh.points[0]));
     }
     return sum / 6;
 }

@@ -15,8 +15,8 @@ constexpr double kInFaceCost = 1e3;
 
 /// The corners and edges of a cell by number.
 struct CellTable {
-    std::array<int, kEdges> lower{};                  // corner of each edge
-    std::array<std::array<int, 8>, 8> edgeOf{};       // of two corners
+    std::array<int, kEdges> lower{};                   // corner of each edge
+    std::array<std::array<int, 8>, 8> edgeOf{};        // of two corners
     std::array<std::array<int, 4>, kFaces> corners{};  // of a face, counter-clockwise from outside
     std::array<unsigned, kEdges> faces{};              // that an edge belongs to, one bit each
 };
@@ -54,8 +54,8 @@ constexpr CellTable kCell = makeCellTable();
 // The faces on the upper sides of a cell.
 constexpr unsigned kUpperFaces = 0b101010;
 
-// The steps of rings over a face: to each edge where the walk around the face leaves the inside, from
-// the edge where it has come in.
+// The steps of rings over a face: to each edge where the walk around the face leaves the inside,
+// from the edge where it has come in.
 void stepsOnFace(int face, unsigned inside, bool joined, std::array<int, kEdges>& next) {
     const std::array<int, 4>& corners = kCell.corners[face];
     const auto isInside = [&](int k) { return (inside >> corners[k % 4] & 1) != 0; };

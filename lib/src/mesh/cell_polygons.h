@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-// A cell of the lattice has 8 corners, corner i at ((i & 1), (i >> 1 & 1), (i >> 2)); 12 edges, edge
-// 4·axis + j the j-th along the axis; and 6 faces, face 2·axis + side.
+// A cell of the lattice has 8 corners, corner i at ((i & 1), (i >> 1 & 1), (i >> 2)); 12 edges,
+// edge 4·axis + j the j-th along the axis; and 6 faces, face 2·axis + side.
 namespace bandvox {
 
 /// The lower corner of each edge of a cell; the upper one is the next along the edge's axis.

@@ -37,7 +37,8 @@ void addTileFaces(const openvdb::FloatGrid& grid, const openvdb::CoordBBox& tile
                 for (block[v] = low[v]; block[v] <= high[v]; block[v] += kBlockSide) {
                     openvdb::Coord beyond = block;
                     beyond[axis] += isUpper ? kBlockSide : -kBlockSide;
-                    if (accessor.probeConstLeaf(beyond) || accessor.getValue(beyond) > iso) continue;
+                    if (accessor.probeConstLeaf(beyond) || accessor.getValue(beyond) > iso)
+                        continue;
                     const auto add = [&](const openvdb::Coord& b) { blocks.push_back(b); };
                     forEachBlockBelow(block, add);
                     forEachBlockBelow(beyond, add);
@@ -77,9 +78,9 @@ void BlockValues::read(const openvdb::FloatGrid& grid, const openvdb::Coord& ori
     for (int i = 0; i < 8; ++i) {
         // A block, or of one above the nodes on the side that it turns to this one.
         const openvdb::Coord corner(i & 1, i >> 1 & 1, i >> 2);
-        const openvdb::Coord from = origin + openvdb::Coord(corner[0] * kBlockSide,
-                                                            corner[1] * kBlockSide,
-                                                            corner[2] * kBlockSide);
+        const openvdb::Coord from =
+            origin +
+            openvdb::Coord(corner[0] * kBlockSide, corner[1] * kBlockSide, corner[2] * kBlockSide);
         const BlockLeaf* leaf = accessor.probeConstLeaf(from);
         const float* values = leaf ? leaf->buffer().data() : nullptr;
         const float tile = values ? 0 : accessor.getValue(from);

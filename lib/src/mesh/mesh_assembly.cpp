@@ -23,7 +23,7 @@ namespace {
 // Blocks that read the same brick are one task.
 constexpr int kGroupSide = CoefficientBrick::kSide;
 constexpr std::size_t kCandidatesPerTask = 256;
-constexpr std::size_t kMostPoints = std::numeric_limits<std::uint32_t>::max() / 2;
+constexpr std::size_t kMostEdgePoints = std::numeric_limits<std::int32_t>::max();
 
 int nodeOf(int x, int y, int z) {
     return (x * kBlockSide + y) * kBlockSide + z;
@@ -108,8 +108,9 @@ void MeshAssembly::groupBlocks() {
         block.firstPoint = static_cast<std::uint32_t>(mPoints);
         mPoints += static_cast<std::size_t>(block.edges.count());
         // Points inside of cells come on top, and are few.
-        if (mPoints > kMostPoints) {
-            throw Error(ErrorKind::Memory, "the mesh has more than " + std::to_string(kMostPoints) +
+        if (mPoints > kMostEdgePoints) {
+            throw Error(ErrorKind::Memory, "the mesh has more than " +
+                                               std::to_string(kMostEdgePoints) +
                                                " points; expected fewer, as larger voxels give");
         }
         mBlockAt.emplace(block.origin, static_cast<std::uint32_t>(i));
@@ -118,9 +119,10 @@ void MeshAssembly::groupBlocks() {
         last = group;
     }
     mGroups.push_back(mBlocks.size());
-    // A closed surface has about two triangles to a point; they are gathered before they are joined.
-    constexpr double kBytesPerPoint = sizeof(Vec3d) + sizeof(openvdb::Vec3f) +
-                                      2 * 2 * sizeof(openvdb::Vec3I);
+    // A closed surface has about two triangles to a point; they are gathered before they are
+    // joined.
+    constexpr double kBytesPerPoint =
+        sizeof(Vec3d) + sizeof(openvdb::Vec3f) + 2 * 2 * sizeof(openvdb::Vec3I);
     requireMemory(kBytesPerPoint * static_cast<double>(mPoints), "the mesh");
 }
 
@@ -213,8 +215,7 @@ MeshAssembly::CellTriangles MeshAssembly::CellWalk::walk(const SurfaceMesh& mesh
         values.read(mAssembly.mField.grid, mBlock->origin);
         for (int node = 0; node < kBlockSide * kBlockSide * kBlockSide; ++node) {
             const Coord cell = coordOf(node);
-            const unsigned inside =
-                values.inside(cell[0], cell[1], cell[2], mAssembly.mField.iso);
+            const unsigned inside = values.inside(cell[0], cell[1], cell[2], mAssembly.mField.iso);
             if (inside != 0 && inside != 0xFF) visitCell(cell, inside, mesh);
         }
     }
@@ -245,8 +246,8 @@ void MeshAssembly::CellWalk::visitCell(const Coord& cell, unsigned inside,
     }
 }
 
-// In the middle of a face the field tells which corners belong together. Both cells at it ask at the
-// same place.
+// In the middle of a face the field tells which corners belong together. Both cells at it ask at
+// the same place.
 unsigned MeshAssembly::CellWalk::joinedFaces(const Coord& cell, unsigned ambiguous) const {
     unsigned joined = 0;
     for (int face = 0; face < 6; ++face) {
@@ -278,8 +279,8 @@ void MeshAssembly::CellWalk::cutAroundMiddle(std::span<const std::uint32_t> poin
     for (const std::uint32_t point : points) sum += mesh.mesh.points[point];
     const Vec3d index = mAssembly.mMap->applyInverseMap(sum / double(points.size()));
     const auto middle = static_cast<std::uint32_t>(mAssembly.mPoints + mPart.middles.size());
-    mPart.middles.push_back(projectToSurface(*mProbe, index, mAssembly.mField.iso,
-                                             mAssembly.mField.tolerance));
+    mPart.middles.push_back(
+        projectToSurface(*mProbe, index, mAssembly.mField.iso, mAssembly.mField.tolerance));
     for (std::size_t k = 0; k < points.size(); ++k) {
         emit(points[k], points[(k + 1) % points.size()], middle);
     }

@@ -14,12 +14,12 @@ namespace bandvox {
 
 /// How the surface of a density becomes triangles.
 struct MeshOptions {
-    /// The value that is the surface, above the grid's background; below it for level sets. Default:
-    /// the one stored in the grid, else 0.5; 0 for level sets.
+    /// The value that is the surface, above the grid's background; below it for level sets.
+    /// Default: the one stored in the grid, else 0.5; 0 for level sets.
     std::optional<double> iso;
 
-    /// How much of the points is left out where the surface hardly bends, 0 to 1: what is left stays
-    /// within a quarter of a voxel times this of all that was there.
+    /// How much of the points is left out where the surface hardly bends, 0 to 1: what is left
+    /// stays within a quarter of a voxel times this of all that was there.
     double adaptivity = 0;
 
     double tolerance = 1e-3;  ///< distance of points from the surface, voxels, 1e-5 to 0.1
@@ -37,11 +37,11 @@ struct MeshResult {
 };
 
 /// The surface {f~ = iso} of what a grid stands for between its nodes (reconstruct): band-limited
-/// densities by their own filter, other grids by the cubic spline. Each point is found on an edge of
-/// the lattice whose ends lie on different sides; the triangles in a cell follow from its corners,
-/// and from f~ in the middle of a face where those leave a choice. So the mesh is closed, every edge
-/// has two triangles of opposite direction, and every point one fan of them (docs/mesh-output.md).
-/// What rises and falls between two neighbouring nodes is not seen.
+/// densities by their own filter, other grids by the cubic spline. Each point is found on an edge
+/// of the lattice whose ends lie on different sides; the triangles in a cell follow from its
+/// corners, and from f~ in the middle of a face where those leave a choice. So the mesh is closed,
+/// every edge has two triangles of opposite direction, and every point one fan of them
+/// (docs/mesh-output.md). What rises and falls between two neighbouring nodes is not seen.
 ///
 /// W. Lorensen, H. Cline: "Marching Cubes" (1987); the choice on faces after G. Nielson, B. Hamann:
 /// "The Asymptotic Decider" (1991). The same for any number of threads.

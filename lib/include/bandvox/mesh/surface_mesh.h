@@ -10,9 +10,10 @@ namespace bandvox {
 
 /// A closed surface as triangles, with what its points know of it.
 struct SurfaceMesh {
-    Mesh mesh;                           ///< world units; counter-clockwise from outside
-    std::vector<openvdb::Vec3f> normals; ///< one for each point, outward, of length 1
-    std::vector<openvdb::Vec3f> colors;  ///< one for each point, linear light; empty without colours
+    Mesh mesh;                            ///< world units; counter-clockwise from outside
+    std::vector<openvdb::Vec3f> normals;  ///< one for each point, outward, of length 1
+    std::vector<openvdb::Vec3f>
+        colors;  ///< one for each point, linear light; empty without colours
 };
 
 }  // namespace bandvox

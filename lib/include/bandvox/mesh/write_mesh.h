@@ -24,12 +24,12 @@ bool holdsColors(const std::filesystem::path& path);
 /// go from start to end.
 ///
 /// .ply: binary, little-endian; colours sRGB in 8 bits. .stl: binary, without normals of points
-/// and colours. .obj: text, colours sRGB after the coordinates. .glb and .gltf: glTF 2.0 in a single
-/// file, colours linear (docs/mesh-output.md). Coordinates are stored in single precision, or in
-/// double by .ply and .obj if they are far from the origin.
-/// Throws Error(ErrorKind::Usage) for another extension, and for a mesh that has no triangles, an
-/// index out of range, or too few or too many normals or colours; Error(ErrorKind::Result) for one
-/// that the format cannot hold; Error(ErrorKind::Runtime) if the file cannot be written.
+/// and colours. .obj: text, colours sRGB after the coordinates. .glb and .gltf: glTF 2.0 in a
+/// single file, colours linear (docs/mesh-output.md). Coordinates are stored in single precision,
+/// or in double by .ply and .obj if they are far from the origin. Throws Error(ErrorKind::Usage)
+/// for another extension, and for a mesh that has no triangles, an index out of range, or too few
+/// or too many normals or colours; Error(ErrorKind::Result) for one that the format cannot hold;
+/// Error(ErrorKind::Runtime) if the file cannot be written.
 void writeMesh(AtomicFile& file, const SurfaceMesh& mesh, Progress& progress = silentProgress());
 
 /// The same to a path, and commits it.
