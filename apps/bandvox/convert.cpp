@@ -1,8 +1,11 @@
-// bandvox convert: a mesh or a built-in shape to a band-limited density in a .vdb file.
+// bandvox convert: a mesh or a built-in shape to a band-limited density in a .vdb file, or to the
+// surface of that as a mesh.
 
 #include "color_grid.h"
 #include "command_run.h"
 #include "commands.h"
+#include "convert_to_mesh.h"
+#include "mesh_output.h"
 #include "solid_input.h"
 #include "standard_streams.h"
 #include "volume_options.h"
@@ -47,6 +50,7 @@ struct ConvertRequest {
     std::optional<int> oversample;
     std::optional<double> samplingTolerance;  ///< if it was asked for
     VdbWriteOptions write;
+    std::optional<MeshOutput> mesh;  ///< instead of the density
 };
 
 void readRoute(const CommandLine& line, ConvertRequest& request) {
@@ -87,7 +91,7 @@ ConvertRequest parseConvert(const CommandLine& line) {
     ConvertRequest request;
     request.input = line.positional(0);
     const std::string output = line.requiredText("output");
-    requireExtension(output, {".vdb"});
+    request.mesh = readVdbOrMeshOutput(line);
     request.output = outputPath(output);
 
     readRoute(line, request);
@@ -285,13 +289,15 @@ const CommandTable& convertTable() {
         const std::string filter = "Filter";
         return CommandTable{
             "convert",
-            "Turn a mesh or a built-in shape into a band-limited density (.vdb).",
+            "Turn a mesh or a built-in shape into a band-limited density (.vdb), or a density into "
+            "a mesh.",
             "Turns the solid inside a mesh into a density on a grid: 1 inside, 0 outside, and in "
             "between only what the grid can hold. The solid is filtered before it is sampled, so "
             "nothing aliases; the error is measured and stored in the grid. Holes of the mesh are "
-            "capped, and said so.",
-            {solidInputEntry()},
-            {
+            "capped, and said so. An output that is a mesh is the surface of the density, closed, "
+            "with normals; its input may also be a .vdb file, with a density or a level set.",
+            {{solidInputEntry().name, solidInputEntry().help + " For a mesh also a .vdb file."}},
+            withMeshEntries({
                 resolutionEntry(density.resolution),
                 voxelSizeEntry(),
                 {"cutoff", 0, "K", formatNumber(density.filter.cutoff),
@@ -328,18 +334,21 @@ const CommandTable& convertTable() {
                 {"clamp", 0, "", "", "Limit the density to 0 .. 1, which cuts off ringing.",
                  filter},
                 {"iso", 0, "D", formatNumber(density.iso),
-                 "Density that is the surface, for the commands that come after.", filter},
+                 "Value that is the surface, of a mesh or for the commands that come after. Of a "
+                 ".vdb "
+                 "input it is the one stored there, else 0.5, and 0 of a level set.",
+                 filter},
                 {"color", 0, "", "",
                  "Write the colours of the mesh beside its density, as a grid Cd: those of its "
                  "points, else of its materials and their textures, in linear light, filtered as "
                  "the density is.",
                  "Output"},
-                vdbOutputEntry(),
+                meshOrVdbOutputEntry(),
                 {"half", 0, "", "",
                  "Store 16-bit values, which changes densities by up to 2.5e-4, above 1 by 5e-4.",
                  "Output"},
                 compressionEntry(),
-            },
+            }),
             {
                 {"bandvox convert bunny.obj -o bunny.vdb --resolution 512",
                  "512 voxels along the bunny's longest side."},
@@ -347,6 +356,7 @@ const CommandTable& convertTable() {
                  "A sharper filter, that keeps more detail and rings by 5 %."},
                 {"bandvox convert spot.obj -o spot.vdb --color",
                  "The density, and the colours of the surface around it."},
+                {"bandvox convert spot.vdb -o spot.ply", "The surface of that, with its colours."},
                 {"bandvox convert part.stl -o part.vdb --voxel-size 0.1 --strict",
                  "Voxels of a given size, and no result if anything about the mesh is doubtful."},
             }};
@@ -355,6 +365,7 @@ const CommandTable& convertTable() {
 }
 
 void runConvert(const CommandLine& line) {
+    if (convertsGridToMesh(line)) return runGridToMesh(line);
     const ConvertRequest request = parseConvert(line);
     requireMeshOrShape("convert", request.input);
     CommandRun run(line);
@@ -374,6 +385,10 @@ void runConvert(const CommandLine& line) {
     if (grids.color) sayColors(run, *grids.color);
     run.warn(result.warnings, ErrorKind::Result);
 
+    if (request.mesh) {
+        const auto colors = grids.color ? grids.color->grid : nullptr;
+        return writeMeshOutput(run, output, *request.mesh, result.grid, colors);
+    }
     openvdb::GridCPtrVec written{result.grid};
     if (grids.color) written.push_back(grids.color->grid);
     run.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, written, request.write); });

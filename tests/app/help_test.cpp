@@ -96,7 +96,7 @@ TEST(Usage, ChecksArgumentsAndValues) {
     expectUsageError({"convert", "shape:cube"}, {"-o"});
     expectUsageError({"convert", "shape:cube", "-o", ""}, {});
     expectUsageError({"convert", "shape:cube", "-o"}, {"--output"});
-    expectUsageError({"convert", "shape:cube", "-o", "a.obj"}, {"a.obj", ".vdb"});
+    expectUsageError({"convert", "shape:cube", "-o", "a.off"}, {"a.off", ".vdb", ".ply"});
     expectUsageError({"convert", "shape:cube", "-o", "a"}, {"'a'", ".vdb"});
     expectUsageError({"convert", "shape:cube", "-o", "a.vdb", "--half", "--half"}, {"--half"});
     expectUsageError({"convert", "shape:cube", "-o", "a.vdb", "--half=yes"}, {"--half"});

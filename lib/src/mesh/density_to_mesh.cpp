@@ -62,6 +62,17 @@ void completeNormals(SurfaceMesh& surface) {
     }
 }
 
+double volumeInside(const Mesh& mesh) {
+    // About a point of the mesh, wherever that is, little cancels.
+    const Vec3d origin = mesh.points.front();
+    double sum = 0;
+    for (const openvdb::Vec3I& t : mesh.triangles) {
+        sum += (mesh.points[t[0]] - origin)
+                   .dot((mesh.points[t[1]] - origin).cross(mesh.points[t[2]] - origin));
+    }
+    return sum / 6;
+}
+
 // Each point has the colour of the grid there. Returns how many have none.
 std::size_t paint(SurfaceMesh& surface, const openvdb::Vec3SGrid::ConstPtr& grid,
                   Progress& progress) {
@@ -108,6 +119,7 @@ MeshResult densityToMesh(const openvdb::FloatGrid::ConstPtr& grid, const MeshOpt
     result.iso = drawable.isLevelSet ? -drawable.iso : drawable.iso;
     result.cells = assembly.cells();
     result.ambiguousFaces = assembly.ambiguousFaces();
+    result.volume = volumeInside(result.surface.mesh);
     completeNormals(result.surface);
     if (options.colors) {
         const std::size_t missing = paint(result.surface, options.colors, progress);

@@ -30,6 +30,7 @@ struct MeshOptions {
 struct MeshResult {
     SurfaceMesh surface;
     double iso = 0;                     ///< the value that is the surface
+    double volume = 0;                  ///< inside of the mesh, world units³
     std::size_t cells = 0;              ///< that the surface passes
     std::size_t ambiguousFaces = 0;     ///< of cells, on which the reconstruction had to decide
     std::size_t pointsCollapsed = 0;    ///< left out by adaptivity

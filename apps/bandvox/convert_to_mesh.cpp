@@ -1,0 +1,56 @@
+// bandvox convert IN.vdb -o OUT.ply: the surface of a density or a level set, anybody's, as a mesh.
+
+#include "convert_to_mesh.h"
+
+#include "choose_grid.h"
+#include "command_run.h"
+#include "mesh_output.h"
+#include "standard_streams.h"
+#include "words.h"
+
+#include <bandvox/mesh/write_mesh.h>
+#include <bandvox/source/shapes.h>
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace bandvox::app {
+
+bool convertsGridToMesh(const CommandLine& line) {
+    const std::string& input = line.positional(0);
+    return !isShape(input) && extensionOf(input) == ".vdb" &&
+           isWritableMesh(line.text("output").value_or(""));
+}
+
+void runGridToMesh(const CommandLine& line) {
+    refuseOptions(line,
+                  {"resolution", "voxel-size", "cutoff", "order", "tolerance", "tile", "route",
+                   "oversample", "overlap", "clamp", "half", "compression"},
+                  "where a mesh is made of a .vdb file, which is not filtered again");
+    const std::string& input = line.positional(0);
+    MeshOutput options = readMeshOutput(line);
+    if (line.has("iso")) options.iso = line.number("iso", {}, 0);
+    CommandRun run(line);
+    AtomicFile output(options.path);
+
+    openvdb::GridPtrVec grids;
+    {
+        const ProgressStage stage(run.progress(), "read", 0);
+        grids = readGrids(input);
+    }
+    run.progress().throwIfInterrupted();
+    const openvdb::FloatGrid::Ptr grid =
+        chooseFloatGrid(grids, line.text("grid"), "density", input);
+    // Colours are asked for by name if they are asked for.
+    const openvdb::Vec3SGrid::Ptr colors = chooseColorGrid(
+        grids, line.has("color") ? std::optional<std::string>("Cd") : std::nullopt, input);
+    run.say("read     " + input + ": grid '" + grid->getName() + "', " +
+            formatCount(static_cast<std::int64_t>(grid->activeVoxelCount()), "active voxel",
+                        "active voxels") +
+            (colors ? ", with colours" : ""));
+    grids.clear();
+    writeMeshOutput(run, output, options, grid, colors);
+}
+
+}  // namespace bandvox::app
