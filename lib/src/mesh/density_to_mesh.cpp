@@ -1,6 +1,8 @@
 #include "core/words.h"
+#include "mesh/collapse_points.h"
 #include "mesh/mesh_assembly.h"
 #include "render/object_colors.h"
+#include "render/picture_request.h"
 #include "render/surface_field.h"
 
 #include <bandvox/core/error.h>
@@ -25,6 +27,10 @@ constexpr double kReadingPart = 0.05;
 
 // Only the bricks that threads are at, and their neighbours, are needed.
 constexpr std::size_t kMeshCacheBytes = std::size_t(256) << 20;
+
+// What an adaptivity of 1 allows, voxels.
+constexpr double kFarthestMove = 0.25;
+constexpr double kRegionVoxels = 64;
 
 void requireRange(const char* what, double found, double low, double high) {
     if (found >= low && found <= high) return;
@@ -119,8 +125,14 @@ MeshResult densityToMesh(const openvdb::FloatGrid::ConstPtr& grid, const MeshOpt
     result.iso = drawable.isLevelSet ? -drawable.iso : drawable.iso;
     result.cells = assembly.cells();
     result.ambiguousFaces = assembly.ambiguousFaces();
-    result.volume = volumeInside(result.surface.mesh);
     completeNormals(result.surface);
+    if (options.adaptivity > 0) {
+        const double voxel = shortestVoxelSide(*grid);
+        result.pointsCollapsed = collapsePoints(
+            result.surface, {kFarthestMove * options.adaptivity * voxel, kRegionVoxels * voxel},
+            progress);
+    }
+    result.volume = volumeInside(result.surface.mesh);
     if (options.colors) {
         const std::size_t missing = paint(result.surface, options.colors, progress);
         if (missing > 0) {
