@@ -1,5 +1,7 @@
 #include "mesh/mesh_checks.h"
 
+#include "source/triangle_distance.h"
+
 #include <bandvox/source/unite_shells.h>
 
 #include <algorithm>
@@ -91,8 +93,46 @@ std::size_t pieces(const Mesh& mesh) {
     return count;
 }
 
+MeshDistance::MeshDistance(const Mesh& mesh) : mMesh(mesh) {
+    for (const openvdb::Vec3I& t : mesh.triangles) {
+        const Vec3d center = (mesh.points[t[0]] + mesh.points[t[1]] + mesh.points[t[2]]) / 3;
+        double radius = 0;
+        for (int k = 0; k < 3; ++k) {
+            radius = std::max(radius, (mesh.points[t[k]] - center).length());
+        }
+        mBalls.push_back({center, radius});
+    }
+}
+
+double MeshDistance::operator()(const Vec3d& place) const {
+    const auto distance = [&](std::size_t i) {
+        const openvdb::Vec3I& t = mMesh.triangles[i];
+        return distanceToTriangle(place,
+                                  {mMesh.points[t[0]], mMesh.points[t[1]], mMesh.points[t[2]]});
+    };
+    double nearest = distance(mLast);
+    for (std::size_t i = 0; i < mBalls.size(); ++i) {
+        const double reach = nearest + mBalls[i].radius;
+        if ((place - mBalls[i].center).lengthSqr() > reach * reach) continue;
+        const double found = distance(i);
+        if (found >= nearest) continue;
+        nearest = found;
+        mLast = i;
+    }
+    return nearest;
+}
+
 std::size_t meetings(const Mesh& mesh) {
     return uniteShells(mesh).report.meetings;
+}
+
+ErrorKind kindOf(const std::function<void()>& run) {
+    try {
+        run();
+    } catch (const Error& error) {
+        return error.kind();
+    }
+    return ErrorKind::Interrupted;
 }
 
 openvdb::FloatGrid::Ptr sampled(int side, const std::function<double(const Vec3d&)>& f) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bandvox/core/error.h>
 #include <bandvox/source/mesh.h>
 
 #include <openvdb/openvdb.h>
@@ -25,8 +26,29 @@ long eulerNumber(const Mesh& mesh);
 /// Connected pieces.
 std::size_t pieces(const Mesh& mesh);
 
+/// Distances to a mesh, found by looking at all of its triangles.
+class MeshDistance {
+  public:
+    explicit MeshDistance(const Mesh& mesh);
+
+    /// From a place to the nearest triangle, world units.
+    double operator()(const openvdb::Vec3d& place) const;
+
+  private:
+    struct Ball {
+        openvdb::Vec3d center;
+        double radius;
+    };
+    const Mesh& mMesh;
+    std::vector<Ball> mBalls;       // around the triangles
+    mutable std::size_t mLast = 0;  // triangle that was the nearest
+};
+
 /// How many pairs of triangles pass through each other.
 std::size_t meetings(const Mesh& mesh);
+
+/// The kind of error that something throws, or ErrorKind::Interrupted for none.
+ErrorKind kindOf(const std::function<void()>& run);
 
 /// A grid of the values of a function at index coordinates from -side to side, active all over,
 /// background 0, voxels of size 1.

@@ -42,6 +42,19 @@ double distanceToAny(const Vec3d& place, const std::vector<std::array<Vec3d, 3>>
     return nearest;
 }
 
+// The distance between two segments along the normal of both, where they cross as seen along it; 0
+// if they do not.
+double distanceWhereCrossing(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
+    const Vec3d first = b - a, second = d - c;
+    const Vec3d across = first.cross(second);
+    const double square = across.lengthSqr();
+    if (!(square > 0)) return 0;
+    const double s = (c - a).cross(second).dot(across) / square;
+    const double t = (c - a).cross(first).dot(across) / square;
+    if (s < 0 || s > 1 || t < 0 || t > 1) return 0;
+    return std::abs((c - a).dot(across)) / std::sqrt(square);
+}
+
 }  // namespace
 
 CollapseRegion::CollapseRegion(CollapsingMesh& mesh, std::span<const std::uint32_t> triangles,
@@ -204,16 +217,21 @@ bool CollapseRegion::keepsShape(std::uint32_t point, std::uint32_t onto) {
                        [&](const auto& triangle) { return fatness(triangle) > thinnest; });
 }
 
-// How far apart the triangles around a point before and after are: at the point, in the middles of
-// its edges, and in the middles of those that come instead.
+// How far apart the triangles around a point before and after are. Seen along their normals they
+// are flat pieces between the point and the places where edges of the one cross edges of the other,
+// so they are farthest apart at one of those.
 double CollapseRegion::displacement(std::uint32_t point, std::uint32_t onto, double limit) {
     double farthest = distanceToAny(place(point), mNew);
-    for (const std::uint32_t other : mAround) {
+    for (const std::uint32_t beyond : mAround) {
         if (farthest > limit) break;
-        if (other == onto) continue;
-        farthest = std::max(farthest, distanceToAny(0.5 * (place(other) + place(point)), mNew));
-        if (std::binary_search(mBeyond.begin(), mBeyond.end(), other)) continue;
-        farthest = std::max(farthest, distanceToAny(0.5 * (place(other) + place(onto)), mOld));
+        const bool isNew =
+            beyond != onto && !std::binary_search(mBeyond.begin(), mBeyond.end(), beyond);
+        if (!isNew) continue;
+        for (const std::uint32_t other : mAround) {
+            if (other == onto || other == beyond) continue;
+            farthest = std::max(farthest, distanceWhereCrossing(place(onto), place(beyond),
+                                                                place(point), place(other)));
+        }
     }
     return farthest;
 }
