@@ -103,8 +103,9 @@ void writeObj(ByteOutput& output, const WritableMesh& mesh) {
     }
     for (const Vec3f& normal : mesh.surface.normals) {
         output.put("vn");
-        const Vec3d rounded(std::round(normal[0] * 1e5) / 1e5, std::round(normal[1] * 1e5) / 1e5,
-                            std::round(normal[2] * 1e5) / 1e5);
+        Vec3d rounded;
+        // Nothing is added to what is not 0, and -0 becomes 0.
+        for (int k = 0; k < 3; ++k) rounded[k] = std::round(normal[k] * 1e5) / 1e5 + 0.0;
         putNumbers<double>(output, rounded);
         output.put('\n');
     }
