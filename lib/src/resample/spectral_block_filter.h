@@ -1,0 +1,32 @@
+#pragma once
+
+#include "reconstruct/interpolation_design.h"
+#include "resample/block_filter.h"
+
+namespace bandvox {
+
+/// Filters by two transforms of a cube around each block, whatever the filter and the lattices, and
+/// reads the result between its nodes where it has to.
+class SpectralBlockFilter final : public BlockFilter {
+  public:
+    /// Throws as makeBlockFilter.
+    SpectralBlockFilter(const LatticeMap& map, const LatticeFilter& filter);
+
+    double scratchBytes() const override;
+    SourceCube sourceCube(const openvdb::Coord& block) const override;
+    Scratch allocate() const override { return {mFft.allocate(), {}, {}}; }
+    void apply(const openvdb::Coord& block, Scratch& scratch,
+               std::span<float> values) const override;
+
+  private:
+    static int chooseSide(const LatticeMap& map, int reach);
+    void tabulate(const LatticeFilter& filter);
+    void multiply(float* cube) const;
+
+    bool mIsAligned;  // target voxels are source voxels: nothing is to be read between them
+    InterpolationDesign mDesign;
+    const RealFft3& mFft;
+    std::vector<float> mTransfer;  // [side][side][side/2 + 1]
+};
+
+}  // namespace bandvox
