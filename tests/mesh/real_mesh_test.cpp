@@ -79,7 +79,6 @@ TEST(RealMesh, TheBunnyComesBack) {
         EXPECT_EQ(meetings(mesh), 0u);
         const double forth = meanDistance(mesh, source.mesh, holes, 3 * voxel) / voxel;
         const double back = meanDistance(source.mesh, mesh, holes, 3 * voxel) / voxel;
-               result.volume / density.metadata.gridVolume);
         EXPECT_LT(forth, c.farthest);
         EXPECT_LT(back, c.farthest);
         // What is convex loses a little to the filter, what is hollow gains it.
