@@ -339,9 +339,10 @@ const CommandTable& convertTable() {
                  "input it is the one stored there, else 0.5, and 0 of a level set.",
                  filter},
                 {"color", 0, "", "",
-                 "Write the colours of the mesh beside its density, as a grid Cd: those of its "
-                 "points, else of its materials and their textures, in linear light, filtered as "
-                 "the density is.",
+                 "Write the colours of the mesh beside its density, as a grid Cd, or with the "
+                 "points "
+                 "of a mesh: those of its points, else of its materials and their textures, in "
+                 "linear light, filtered as the density is.",
                  "Output"},
                 meshOrVdbOutputEntry(),
                 {"half", 0, "", "",

@@ -75,7 +75,9 @@ void refuseOptions(const CommandLine& line, const std::vector<std::string>& opti
                    const std::string& where) {
     for (const std::string& option : options) {
         if (!line.has(option)) continue;
-        throw Error(ErrorKind::Usage, "--" + option + " has no meaning " + where);
+        std::string message = "--" + option;
+        message += " has no meaning " + where;
+        throw Error(ErrorKind::Usage, message);
     }
 }
 

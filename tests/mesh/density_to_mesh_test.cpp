@@ -227,9 +227,14 @@ TEST(DensityToMesh, TilesEndLikeVoxels) {
     }
     // Half way between the last voxels inside and the first outside, but for the corners.
     EXPECT_NEAR(results[0].volume, 256 * 16 * 8, 0.03 * 256 * 16 * 8);
-    auto root = openvdb::FloatGrid::create(0);
-    root->tree().addTile(3, openvdb::Coord(0), 1.0F, true);
-    EXPECT_EQ(root->tree().leafCount(), 0u);
+    // A tile of a larger node, alone.
+    auto large = openvdb::FloatGrid::create(0);
+    large->tree().addTile(2, openvdb::Coord(0), 1.0F, false);
+    large->tree().setValueOn({300, 300, 300}, 1.0F);
+    const MeshResult result = densityToMesh(large);
+    expectSound(result);
+    EXPECT_EQ(pieces(result.surface.mesh), 2u);
+    EXPECT_NEAR(result.volume, 128 * 128 * 128, 0.01 * 128 * 128 * 128);
 }
 
 TEST(DensityToMesh, TheEndOfTheGridCutsTheSurface) {
@@ -295,7 +300,7 @@ TEST(DensityToMesh, AnyLinearTransform) {
 }
 
 TEST(DensityToMesh, IsTheSameForAnyNumberOfThreads) {
-    const auto grid = sampled(40, RandomWaves(3, 0.3, 30));
+    const auto grid = sampled(36, RandomWaves(3, 0.2, 14));
     MeshOptions options;
     options.iso = 0.2;
     options.adaptivity = 0.3;

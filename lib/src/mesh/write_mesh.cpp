@@ -83,8 +83,9 @@ double coarseness(const openvdb::BBoxd& box) {
 
 const std::vector<std::string>& writableMeshExtensions() {
     static const std::vector<std::string> extensions = [] {
-        std::vector<std::string> all;
-        for (const MeshFormat& format : kMeshFormats) all.emplace_back(format.extension);
+        std::vector<std::string> all(kMeshFormats.size());
+        std::transform(kMeshFormats.begin(), kMeshFormats.end(), all.begin(),
+                       [](const MeshFormat& format) { return format.extension; });
         return all;
     }();
     return extensions;
