@@ -44,9 +44,9 @@ TEST(Readme, RunnableBlocksRun) {
             runProgram({"/bin/sh", "-e", "-c", path + block}, {.folder = folder.path()});
         EXPECT_EQ(result.status, 0) << block << result.err;
     }
-    for (const char* name :
-         {"bunny.vdb", "bunny.png", "bunny.exr", "bunny.json", "sharp.vdb", "voxels.png",
-          "piped.png", "painted.vdb", "soft.png", "fog.png", "around.03.png"}) {
+    for (const char* name : {"bunny.vdb", "bunny.png", "bunny.exr", "bunny.json", "sharp.vdb",
+                             "voxels.png", "small.vdb", "levels.vdb", "piped.png", "painted.vdb",
+                             "soft.png", "fog.png", "around.03.png"}) {
         EXPECT_TRUE(fs::exists(folder / name)) << name;
     }
 }

@@ -45,10 +45,9 @@ struct ImageChannels {
 bool isImageFile(const std::filesystem::path& path);
 
 /// Writes a picture, whole or not at all. `.png`: 8-bit sRGB with alpha, by OpenImageIO's colour
-/// management. `.exr`: the channels that are asked for, linear; of a part of a larger picture the data
-/// window, in that one's display window.
-/// Throws Error(ErrorKind::Runtime) if it cannot be written, Error(ErrorKind::Usage) for another
-/// extension, or if no channel is asked for.
+/// management. `.exr`: the channels that are asked for, linear; of a part of a larger picture the
+/// data window, in that one's display window. Throws Error(ErrorKind::Runtime) if it cannot be
+/// written, Error(ErrorKind::Usage) for another extension, or if no channel is asked for.
 void writeImage(const std::filesystem::path& path, const Image& image,
                 const ImageChannels& channels = {});
 
