@@ -51,11 +51,10 @@ ViewPage summarize(CommandRun& run, const ViewRequest& request) {
     page.file = request.input;
     {
         const ProgressStage stage(run.progress(), "read", 0);
-        page.grid = chooseFloatGrid(readGrids(request.input), request.grid, "density",
-                                    request.input);
+        page.grid =
+            chooseFloatGrid(readGrids(request.input), request.grid, "density", request.input);
     }
-    page.title = request.title.value_or(
-        std::filesystem::path(request.input).filename().string());
+    page.title = request.title.value_or(std::filesystem::path(request.input).filename().string());
     page.texture = gridToTexture(*page.grid, request.size, run.progress());
     page.histogram = valueHistogram(*page.grid, run.progress());
     page.spectrum = radialSpectrum(*page.grid, 200, run.progress());
@@ -65,8 +64,8 @@ ViewPage summarize(CommandRun& run, const ViewRequest& request) {
     const double coarsest = std::max({texture.spacing[0], texture.spacing[1], texture.spacing[2]});
     run.say("reduced  '" + page.grid->getName() + "' to " + std::to_string(texture.size[0]) +
             " x " + std::to_string(texture.size[1]) + " x " + std::to_string(texture.size[2]) +
-            " samples, " + (coarsest == 1 ? "its voxels" : formatNumber(coarsest, 3) +
-                                                               " voxels from each other") +
+            " samples, " +
+            (coarsest == 1 ? "its voxels" : formatNumber(coarsest, 3) + " voxels from each other") +
             ", to be seen at " + formatNumber(page.iso));
     run.count("samples", texture.values.size());
     run.count("spectrum_blocks", page.spectrum.blocks);
@@ -78,17 +77,17 @@ void warnOfDoubts(CommandRun& run, const ViewPage& page) {
     const VolumeTexture& texture = page.texture;
     if (!(texture.low < page.iso && page.iso < texture.high)) {
         warnings.push_back("no surface is seen: the iso-value is " + formatNumber(page.iso) +
-                           ", and the values shown go from " + formatNumber(texture.low) +
-                           " to " + formatNumber(texture.high));
+                           ", and the values shown go from " + formatNumber(texture.low) + " to " +
+                           formatNumber(texture.high));
     }
     if (texture.notFiniteValues > 0) {
-        warnings.push_back(
-            formatCount(texture.notFiniteValues, "value is not finite, and is",
-                        "values are not finite, and are") +
-            " shown as background");
+        warnings.push_back(formatCount(texture.notFiniteValues, "value is not finite, and is",
+                                       "values are not finite, and are") +
+                           " shown as background");
     }
     if (!page.grid->transform().isLinear()) {
-        warnings.emplace_back("the grid's transform is not linear; its shape is shown as if it was");
+        warnings.emplace_back(
+            "the grid's transform is not linear; its shape is shown as if it was");
     }
     run.warn(warnings, ErrorKind::Result);
 }
@@ -143,9 +142,8 @@ void runView(const CommandLine& line) {
     AtomicFile output(request.output);
     const ViewPage page = summarize(run, request);
     warnOfDoubts(run, page);
-    run.writeOutput(output, [&](AtomicFile& file) {
-        writePage(file, viewHtml(page, run.progress()));
-    });
+    run.writeOutput(output,
+                    [&](AtomicFile& file) { writePage(file, viewHtml(page, run.progress())); });
 }
 
 }  // namespace bandvox::app

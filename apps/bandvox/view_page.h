@@ -27,8 +27,8 @@ double viewIso(const openvdb::FloatGrid& grid, const std::optional<double>& aske
                const VolumeTexture& texture);
 
 /// What the page says in words and numbers. Keys: version, title, file, iso, inside ("above" or
-/// "below" the iso-value), background, texture {size, low, high, spacing, center, first_step (columns:
-/// world vectors from a sample to the next along x, y and z), not_finite, linear, bytes},
+/// "below" the iso-value), background, texture {size, low, high, spacing, center, first_step
+/// (columns: world vectors from a sample to the next along x, y and z), not_finite, linear, bytes},
 /// histogram {low, high, active, inactive}, spectrum {block_side, blocks, power}, grid (what
 /// gridReport says).
 nlohmann::ordered_json viewHeader(const ViewPage& page);
@@ -37,8 +37,8 @@ nlohmann::ordered_json viewHeader(const ViewPage& page);
 /// them, then the high ones, deflated (zlib).
 std::string viewTexture(const VolumeTexture& texture, const Progress& progress);
 
-/// The whole page, HTML that needs nothing beside it. Whatever the strings hold, none of it is taken
-/// for HTML or for a script.
+/// The whole page, HTML that needs nothing beside it. Whatever the strings hold, none of it is
+/// taken for HTML or for a script.
 std::string viewHtml(const ViewPage& page, const Progress& progress);
 
 }  // namespace bandvox::app

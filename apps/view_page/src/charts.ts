@@ -21,14 +21,6 @@ const text = (x: number, y: number, words: string, anchor: string, style = "tick
 const line = (x0: number, y0: number, x1: number, y1: number, style: string) =>
   drawing("line", { x1: x0, y1: y0, x2: x1, y2: y1, class: style });
 
-/** A round number near the range's fifth. */
-function stepOf(range: number): number {
-  const rough = range / 4;
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const lead = rough / power;
-  return power * (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7.5 ? 5 : 10);
-}
-
 function legend(...entries: [string, string][]): HTMLElement {
   const list = element("ul", { class: "legend" });
   for (const [style, words] of entries) list.append(element("li", {}, element("i", { class: style }), words));
@@ -114,7 +106,7 @@ export function drawSpectrum(volume: Volume, place: HTMLElement): void {
       (isFiltered ? `; the filter's cutoff is ${cutoff} cycles per voxel` : ""),
   );
   svg.append(drawing("rect", { x: x(0.5), y: kTop, width: x(highest) - x(0.5), height: kInnerHeight, class: "beyond" }));
-  const step = Math.max(20, Math.round(stepOf(-floor) / 20) * 20);
+  const step = floor < -80 ? 40 : 20;
   for (let level = 0; level >= floor; level -= step) {
     svg.append(line(kLeft, y(level), kWidth - kRight, y(level), "rule"));
     svg.append(text(kLeft - 6, y(level) + 3.5, String(level).replace("-", "−"), "end"));

@@ -85,10 +85,10 @@ function start(volume: Volume): void {
 
   function update(): void {
     byId<HTMLOutputElement>("iso-value").value = numberInWords(settings.iso, 3);
-    byId<HTMLOutputElement>("fog-value").value = numberInWords(settings.thickness, 2);
+    byId<HTMLOutputElement>("fog-value").value = `${fog.value} %`;
     byId("controls").classList.toggle("is-fog", settings.fog);
     iso.setAttribute("aria-valuetext", numberInWords(settings.iso, 3));
-    fog.setAttribute("aria-valuetext", numberInWords(settings.thickness, 2));
+    fog.setAttribute("aria-valuetext", `${fog.value} %`);
     histogram.setIso(settings.iso);
     slices.draw();
     space?.set(settings);

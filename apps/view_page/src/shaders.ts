@@ -85,13 +85,13 @@ vec3 shade(vec3 p, vec3 toEye, bool fromInside) {
   float open = fromInside ? 0.7 : openness(p, out1 / max(length(out1), 1e-9));
   float lamp = max(dot(normal, uLight), 0.0);
   float around = 0.5 + 0.5 * dot(normal, uSky);
-  vec3 half_ = normalize(uLight + toEye);
-  float gloss = 0.16 * pow(max(dot(normal, half_), 0.0), 42.0);
+  vec3 halfway = normalize(uLight + toEye);
+  float gloss = 0.16 * pow(max(dot(normal, halfway), 0.0), 42.0);
   float rim = pow(1.0 - max(dot(normal, toEye), 0.0), 3.0);
   vec3 base = fromInside ? uInner : uColor;
-  vec3 light = vec3(1.0, 0.97, 0.93) * 0.86 * lamp * mix(0.65, 1.0, open) +
-               mix(vec3(0.16, 0.15, 0.15), vec3(0.36, 0.40, 0.45), around) * open;
-  return base * light + vec3(gloss) * open + 0.10 * rim * open * vec3(0.7, 0.85, 1.0);
+  vec3 light = vec3(1.0, 0.96, 0.91) * 0.80 * lamp * mix(0.5, 1.0, open) +
+               mix(vec3(0.07, 0.065, 0.065), vec3(0.22, 0.26, 0.31), around) * open;
+  return base * light + vec3(gloss) * open + 0.08 * rim * open * vec3(0.7, 0.85, 1.0);
 }
 
 bool surface(vec3 o, vec3 d, float t0, float t1, out float hit, out bool fromInside) {
@@ -170,8 +170,8 @@ vec4 fog(vec3 o, vec3 d, float t0, float t1) {
     float density = fogOf(valueAt(p));
     if (density > 1e-4) {
       float kept = exp(-density * uThickness * worldStep);
-      vec3 scattered = vec3(1.0, 0.96, 0.90) * 1.05 * sunlit(p, toLight, lightStep) +
-                       vec3(0.20, 0.25, 0.31);
+      vec3 scattered = vec3(1.0, 0.95, 0.88) * 0.85 * sunlit(p, toLight, lightStep) +
+                       vec3(0.085, 0.11, 0.145);
       sum += through * (1.0 - kept) * scattered * mix(uColor, vec3(0.92), 0.6);
       through *= kept;
     }

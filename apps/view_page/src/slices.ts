@@ -5,7 +5,7 @@ import type { Volume } from "./volume";
 import { element, numberInWords } from "./words";
 
 /** Axes to the right and upward of the slice across each axis. */
-const kAcross: [number, number][] = [[1, 2], [0, 2], [0, 1]];
+const kAcross: [number, number][] = [[2, 1], [0, 2], [0, 1]];
 
 export class Slices {
   private readonly canvases: HTMLCanvasElement[] = [];

@@ -6,10 +6,11 @@ export function numberInWords(value: number, digits = 4): string {
   if (value === 0) return "0";
   const size = Math.abs(value);
   if (size >= 1e6 || size < 1e-3) {
-    const [mantissa, exponent] = value.toExponential(Math.min(digits - 1, 2)).split("e");
-    const power = Number(exponent);
+    const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
+    const power = `10${superscript(Number(exponent))}`;
     const short = String(Number(mantissa));
-    return `${short} × 10${superscript(power)}`.replace("-", "−");
+    if (Math.abs(Number(short)) === 1) return value < 0 ? `−${power}` : power;
+    return `${short} × ${power}`.replace("-", "−");
   }
   return String(Number(value.toPrecision(digits))).replace("-", "−");
 }
