@@ -48,13 +48,14 @@ ViewRequest parseView(const CommandLine& line) {
 
 ViewPage summarize(CommandRun& run, const ViewRequest& request) {
     ViewPage page;
-    page.file = request.input;
+    // Whoever gets the page need not know the folder.
+    page.file = std::filesystem::path(request.input).filename().string();
     {
         const ProgressStage stage(run.progress(), "read", 0);
         page.grid =
             chooseFloatGrid(readGrids(request.input), request.grid, "density", request.input);
     }
-    page.title = request.title.value_or(std::filesystem::path(request.input).filename().string());
+    page.title = request.title.value_or(page.file);
     page.texture = gridToTexture(*page.grid, request.size, run.progress());
     page.histogram = valueHistogram(*page.grid, run.progress());
     page.spectrum = radialSpectrum(*page.grid, 200, run.progress());

@@ -13,7 +13,7 @@ namespace bandvox::app {
 /// What a page shows of a grid.
 struct ViewPage {
     std::string title;  ///< any bytes
-    std::string file;   ///< where the grid comes from; any bytes
+    std::string file;   ///< name of the file that the grid is from; any bytes
     openvdb::FloatGrid::ConstPtr grid;
     double iso = 0.5;
     VolumeTexture texture;
@@ -27,9 +27,9 @@ double viewIso(const openvdb::FloatGrid& grid, const std::optional<double>& aske
                const VolumeTexture& texture);
 
 /// What the page says in words and numbers. Keys: version, title, file, iso, inside ("above" or
-/// "below" the iso-value), background, texture {size, low, high, spacing, center, first_step
-/// (columns: world vectors from a sample to the next along x, y and z), not_finite, linear, bytes},
-/// histogram {low, high, active, inactive}, spectrum {block_side, blocks, power}, grid (what
+/// "below" the iso-value), background, texture {size, low, high, spacing, first (index
+/// space), center (world), steps (world vectors from a sample to the next along x, y and z), linear,
+/// not_finite}, histogram {low, high, active, inactive}, spectrum {block_side, blocks, power}, grid (what
 /// gridReport says).
 nlohmann::ordered_json viewHeader(const ViewPage& page);
 

@@ -1,4 +1,20 @@
+import { createHash } from "node:crypto";
+import { readdirSync, readFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
 import { defineConfig } from "vite";
+
+const here = dirname(fileURLToPath(import.meta.url));
+
+// The page says what it was made of, so that a test without npm finds out if that has changed since:
+// cat index.html package-lock.json tsconfig.json vite.config.js src/* | sha256sum
+function digestOfSources() {
+  const names = ["index.html", "package-lock.json", "tsconfig.json", "vite.config.js"];
+  for (const name of readdirSync(join(here, "src")).sort()) names.push(join("src", name));
+  const hash = createHash("sha256");
+  for (const name of names) hash.update(readFileSync(join(here, name)));
+  return hash.digest("hex");
+}
 
 // Puts script and style into the page itself: it has to work as a single file, without a server.
 function inlineAll() {
@@ -22,7 +38,7 @@ function inlineAll() {
         .replace(/\s*<script type="module"[^>]*><\/script>/, "")
         .replace(/\s*<link rel="stylesheet"[^>]*>/, "")
         // The script comes after the data, so that those are there.
-        .replace("</head>", () => `<style>${styles.trim()}</style>\n</head>`)
+        .replace("</head>", () => `<meta name="bandvox-sources" content="${digestOfSources()}">\n` + `<style>${styles.trim()}</style>\n</head>`)
         .replace("</body>", () => `<script>\n${scripts}\n</script>\n</body>`);
     },
   };

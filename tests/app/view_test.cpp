@@ -147,6 +147,18 @@ TEST_F(View, WritesAPageThatHoldsTheGrid) {
     EXPECT_EQ(Json::parse(readText(mFolder / "s.json")).at("counts").at("samples"), values.size());
 }
 
+TEST_F(View, PageIsMadeOfTheSourcesThatAreThere) {
+    const std::string root = BANDVOX_SOURCE_DIR;
+    const RunResult digest = runProgram(
+        {"/bin/sh", "-c",
+         "LC_ALL=C; cat index.html package-lock.json tsconfig.json vite.config.js src/* | "
+         "sha256sum"},
+        {.folder = root + "/apps/view_page"});
+    const std::string said = between(readText(root + "/apps/bandvox/view_page.html"),
+                                     "<meta name=\"bandvox-sources\" content=\"", "\"");
+    EXPECT_EQ(digest.out.substr(0, 64), said) << "scripts/build-view-page makes it anew";
+}
+
 TEST_F(View, PlacesTheSamplesInTheWorld) {
     auto grid = openvdb::FloatGrid::create(0.0F);
     grid->fill(openvdb::CoordBBox(openvdb::Coord(2, 4, 6), openvdb::Coord(11, 23, 35)), 2.0F);
