@@ -174,7 +174,7 @@ class SlabFiller {
     void sumAlongZ(const Leaf& leaf) {
         const float* values = leaf.buffer().data();
         const int count = mZ.count();
-        mAlongZ.assign(static_cast<std::size_t>(kLeafSide * kLeafSide * count), 0.0F);
+        mAlongZ.assign(static_cast<std::size_t>(kLeafSide) * kLeafSide * count, 0.0F);
         for (int row = 0; row < kLeafSide * kLeafSide; ++row) {
             float rises[kLeafSide];
             for (int z = 0; z < kLeafSide; ++z) {
@@ -192,7 +192,7 @@ class SlabFiller {
     // mAlongY[x][y sample][z sample]
     void sumAlongY() {
         const int zs = mZ.count(), ys = mY.count();
-        mAlongY.assign(static_cast<std::size_t>(kLeafSide * ys * zs), 0.0F);
+        mAlongY.assign(static_cast<std::size_t>(kLeafSide) * ys * zs, 0.0F);
         for (int x = 0; x < kLeafSide; ++x) {
             for (int s = 0; s < ys; ++s) {
                 float* out = &mAlongY[(x * ys + s) * zs];
