@@ -28,9 +28,9 @@ double viewIso(const openvdb::FloatGrid& grid, const std::optional<double>& aske
 
 /// What the page says in words and numbers. Keys: version, title, file, iso, inside ("above" or
 /// "below" the iso-value), background, texture {size, low, high, spacing, first (index
-/// space), center (world), steps (world vectors from a sample to the next along x, y and z), linear,
-/// not_finite}, histogram {low, high, active, inactive}, spectrum {block_side, blocks, power}, grid (what
-/// gridReport says).
+/// space), center (world), steps (world vectors from a sample to the next along x, y and z),
+/// linear, not_finite}, histogram {low, high, active, inactive}, spectrum {block_side, blocks,
+/// power}, grid (what gridReport says).
 nlohmann::ordered_json viewHeader(const ViewPage& page);
 
 /// The texture's values as (v - low) / (high - low), 16-bit floats: first the low bytes of all of

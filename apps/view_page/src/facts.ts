@@ -9,20 +9,37 @@ function list(entries: [string, string | Node][]): HTMLElement {
 }
 
 const kScaleLow = -9;
+const kSampling = "Sampling, measured";
 
 /** An error beside the tolerance, on a logarithmic scale from 1e-9 to 1. */
-function meter(value: number, tolerance: number): SVGElement {
+function meter(value: number, tolerance: number, isBound: boolean): SVGElement {
   const place = (v: number) => 100 * Math.min(1, Math.max(0.015, 1 - Math.log10(Math.max(v, 1e-300)) / kScaleLow));
   const svg = drawing("svg", { viewBox: "0 0 100 8", class: "meter", "aria-hidden": "true", preserveAspectRatio: "none" });
   svg.append(drawing("rect", { x: 0, y: 2, width: 100, height: 4, rx: 2, class: "meter-ground" }));
   if (value > 0) {
-    svg.append(drawing("rect", { x: 0, y: 2, width: place(value), height: 4, rx: 2, class: value <= tolerance || !(tolerance > 0) ? "meter-good" : "meter-bad" }));
+    svg.append(drawing("rect", { x: 0, y: 2, width: place(value), height: 4, rx: 2, class: !isBound ? "meter-plain" : value <= tolerance ? "meter-good" : "meter-bad" }));
   }
   if (tolerance > 0) svg.append(drawing("rect", { x: place(tolerance) - 0.4, y: 0, width: 0.8, height: 8, class: "meter-mark" }));
   return svg;
 }
 
 const numberOf = (value: Json | undefined) => (typeof value === "number" ? value : NaN);
+
+/** What the measured error means beside the tolerance, which leaves that of sampling apart. */
+function verdict(route: string, measured: number, bound: number): HTMLElement {
+  const say = (kind: string, words: string) => element("p", { class: `verdict ${kind}` }, words);
+  const found = numberInWords(measured, 2);
+  const limit = numberInWords(bound, 2);
+  if (route !== "exact") {
+    return Number.isFinite(measured)
+      ? say("", `Sampling changed the density by ${found}; the tolerance of ${limit} is for all else.`)
+      : say("", "What sampling did to the density was not measured.");
+  }
+  if (!Number.isFinite(measured)) return say("", "The error was not measured.");
+  return measured <= bound
+    ? say("good", `The measured error is ${found}, within the tolerance of ${limit}.`)
+    : say("bad", `The measured error is ${found}, above the tolerance of ${limit}.`);
+}
 
 export function showBudget(volume: Volume, place: HTMLElement): void {
   const own = volume.header.grid.bandvox;
@@ -40,28 +57,18 @@ export function showBudget(volume: Volume, place: HTMLElement): void {
   const bound = Math.max(tolerance, atNyquist);
   const errors: [string, number, string][] = [];
   if (route === "exact") errors.push(["Closure, measured", numberOf(own["closure_error"]), "How far densities away from the surface were from whole numbers"]);
-  else errors.push(["Sampling, measured", numberOf(own["sampling_error"]), "What taking samples of the solid did to the density"]);
+  else errors.push([kSampling, numberOf(own["sampling_error"]), "What taking samples of the solid did to the density"]);
   const storage = numberOf(own["storage_error"]);
   errors.push(["Storage", storage, "The largest change by rounding to 16 bits; 0 of floats"]);
   errors.push(["Left at Nyquist, H(½)", atNyquist, "What the filter lets pass where the lattice ends"]);
 
-  const measured = errors[0][1];
-  const isMet = measured <= bound;
-  const isKnown = Number.isFinite(measured);
-  place.append(
-    element("p", { class: `verdict ${isKnown ? (isMet ? "good" : "bad") : ""}` },
-      !isKnown
-        ? "The error of sampling was not measured."
-        : isMet
-          ? `The measured error is ${numberInWords(measured, 2)}, within the tolerance of ${numberInWords(bound, 2)}.`
-          : `The measured error is ${numberInWords(measured, 2)}, above the tolerance of ${numberInWords(bound, 2)}.`),
-  );
+  place.append(verdict(route, errors[0][1], bound));
   const table = element("table", { class: "errors" });
   table.append(element("caption", { class: "hidden" }, "Errors of the density, full density being 1"));
   const row = (name: string, value: number, title: string, withMeter: boolean) => {
     const cells = element("tr", { title }, element("th", { scope: "row" }, name), element("td", { class: "number" }, Number.isFinite(value) ? numberInWords(value, 3) : "not known"));
     const last = element("td", { class: "meter-cell" });
-    if (withMeter && Number.isFinite(value)) last.append(meter(value, bound));
+    if (withMeter && Number.isFinite(value)) last.append(meter(value, bound, name !== kSampling));
     cells.append(last);
     return cells;
   };

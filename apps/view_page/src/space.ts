@@ -143,6 +143,8 @@ export class SpaceView {
   set(settings: Settings): void {
     const { uniforms } = this.box.material;
     uniforms.uIso.value = this.volume.partOf(settings.iso);
+    // Whatever the background is not lies inside.
+    uniforms.uInside.value = this.volume.header.background > settings.iso ? -1 : 1;
     uniforms.uFog.value = settings.fog;
     uniforms.uThickness.value = settings.thickness;
     this.planes.forEach((plane, axis) => {
@@ -201,7 +203,7 @@ export class SpaceView {
         uSlopeToWorld: { value: stepToWorld.clone().invert().transpose() },
         uToClip: { value: new Matrix4() },
         uIso: { value: 0.5 },
-        uInside: { value: volume.header.inside === "above" ? 1 : -1 },
+        uInside: { value: 1 },
         uFog: { value: false },
         uFogRange: { value: new Vector2(...fogRange(volume)) },
         uThickness: { value: 10 },

@@ -8,6 +8,7 @@ export interface Header {
   title: string;
   file: string;
   iso: number;
+  /** Where values are inside of the iso-value above. */
   inside: "above" | "below";
   background: number;
   texture: {

@@ -173,6 +173,16 @@ test("tells the error budget", async () => {
   await page.close();
 });
 
+test("leaves sampling apart from the tolerance", async () => {
+  const html = make("sampled", "shape:sphere", ["--route", "sampled", "--oversample", "4"]);
+  const { page, troubles } = await open(browser, html);
+  const words = await page.$eval("#budget .verdict", (verdict) => verdict.textContent);
+  assert.match(words, /^Sampling changed the density by 0\.0/);
+  assert.equal((await page.$$("#budget .meter-bad")).length, 0);
+  assert.deepEqual(troubles, []);
+  await page.close();
+});
+
 test("takes text for text", async () => {
   const evil = "</script><img src=x onerror=\"window.hurt = 1\"><b>bold</b> & more";
   const html = make("evil", "shape:sphere", [], ["--title", evil]);
