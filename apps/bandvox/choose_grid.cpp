@@ -5,6 +5,8 @@
 #include <bandvox/core/error.h>
 
 #include <map>
+#include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -66,6 +68,37 @@ auto named(const openvdb::GridPtrVec& grids, const std::string& name, const std:
 }
 
 }  // namespace
+
+openvdb::GridBase::Ptr chooseGrid(const openvdb::GridPtrVec& grids, const std::string& name,
+                                  const std::string& file) {
+    auto found = named(grids, name, file, [](const openvdb::GridBase::Ptr& grid) { return grid; });
+    if (!found) fail(grids, file, "a grid '" + name + "'");
+    return found;
+}
+
+openvdb::FloatGrid::Ptr asFloatGrid(const openvdb::GridBase::Ptr& grid) {
+    if (auto floats = asFloats(grid)) return floats;
+    openvdb::FloatGrid::Ptr result;
+    const auto take = [&result](const auto& other) {
+        using Tree = typename std::decay_t<decltype(other)>::TreeType;
+        if constexpr (std::is_same_v<typename Tree::ValueType, bool>) {
+            // OpenVDB copies values of trees of truths only to their own kind.
+            auto tree = std::make_shared<openvdb::FloatTree>(other.tree(), 0.0F, 1.0F,
+                                                             openvdb::TopologyCopy());
+            result = openvdb::FloatGrid::create(tree);
+        } else {
+            result = std::make_shared<openvdb::FloatGrid>(other);
+        }
+    };
+    if (const auto bools = openvdb::gridPtrCast<openvdb::BoolGrid>(grid)) take(*bools);
+    if (const auto mask = openvdb::gridPtrCast<openvdb::MaskGrid>(grid)) take(*mask);
+    if (const auto whole = openvdb::gridPtrCast<openvdb::Int32Grid>(grid)) take(*whole);
+    if (result) {
+        result->setTransform(grid->transformPtr());
+        static_cast<openvdb::MetaMap&>(*result) = static_cast<const openvdb::MetaMap&>(*grid);
+    }
+    return result;
+}
 
 openvdb::FloatGrid::Ptr findFloatGrid(const openvdb::GridPtrVec& grids,
                                       const std::optional<std::string>& name,

@@ -9,6 +9,13 @@
 // ErrorKind::Input, and list what `file` holds.
 namespace bandvox::app {
 
+/// The grid of this name, of any type.
+openvdb::GridBase::Ptr chooseGrid(const openvdb::GridPtrVec& grids, const std::string& name,
+                                  const std::string& file);
+
+/// The grid, or one of its numbers or truths as floats; null if it has neither.
+openvdb::FloatGrid::Ptr asFloatGrid(const openvdb::GridBase::Ptr& grid);
+
 /// The grid of floats that is asked for; without a name that of the standard name, else the only
 /// one of floats. Doubles are turned into floats.
 openvdb::FloatGrid::Ptr chooseFloatGrid(const openvdb::GridPtrVec& grids,

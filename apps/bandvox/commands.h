@@ -26,12 +26,16 @@ void runRender(const CommandLine& line);
 const CommandTable& infoTable();
 void runInfo(const CommandLine& line);
 
+const CommandTable& viewTable();
+void runView(const CommandLine& line);
+
 /// All commands, in the order in which the help lists them.
 inline const std::vector<Command>& commands() {
     static const std::vector<Command> all{{convertTable, runConvert},
                                           {voxelizeTable, runVoxelize},
                                           {renderTable, runRender},
-                                          {infoTable, runInfo}};
+                                          {infoTable, runInfo},
+                                          {viewTable, runView}};
     return all;
 }
 

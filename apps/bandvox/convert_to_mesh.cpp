@@ -23,10 +23,11 @@ bool convertsGridToMesh(const CommandLine& line) {
            isWritableMesh(line.text("output").value_or(""));
 }
 
-void runGridToMesh(const CommandLine& line) {
+void convertGridToMesh(const CommandLine& line) {
     refuseOptions(line,
                   {"resolution", "voxel-size", "cutoff", "order", "tolerance", "tile", "route",
-                   "oversample", "overlap", "clamp", "half", "compression"},
+                   "oversample", "overlap", "clamp", "half", "compression", "background", "factor",
+                   "onto", "no-filter", "lod"},
                   "where a mesh is made of a .vdb file, which is not filtered again");
     const std::string& input = line.positional(0);
     MeshOutput options = readMeshOutput(line);

@@ -8,6 +8,6 @@ namespace bandvox::app {
 bool convertsGridToMesh(const CommandLine& line);
 
 /// Runs such a command.
-void runGridToMesh(const CommandLine& line);
+void convertGridToMesh(const CommandLine& line);
 
 }  // namespace bandvox::app

@@ -57,18 +57,14 @@ OptionEntry meshOrVdbOutputEntry() {
         "Output"};
 }
 
-std::vector<OptionEntry> withMeshEntries(std::vector<OptionEntry> entries) {
-    const std::string mesh = "Mesh";
-    entries.push_back(
-        {"grid", 0, "NAME", "density, or the only float grid",
-         "Grid of a .vdb input whose surface is wanted. NAME[1] is the second of that name.",
-         mesh});
-    entries.push_back(
-        {"adaptivity", 0, "A", formatNumber(MeshOptions().adaptivity),
-         "Leave points out where the surface hardly bends, 0 to 1: what is left stays within a "
-         "quarter of a voxel times A of what was there.",
-         mesh});
-    return entries;
+OptionEntry adaptivityEntry() {
+    return {"adaptivity",
+            0,
+            "A",
+            formatNumber(MeshOptions().adaptivity),
+            "Leave points of a mesh out where the surface hardly bends, 0 to 1: what is left stays "
+            "within a quarter of a voxel times A of what was there.",
+            "Output"};
 }
 
 void refuseOptions(const CommandLine& line, const std::vector<std::string>& options,
@@ -96,12 +92,11 @@ MeshOutput readMeshOutput(const CommandLine& line) {
 std::optional<MeshOutput> readVdbOrMeshOutput(const CommandLine& line) {
     const std::string output = line.requiredText("output");
     requireVdbOrMesh(output);
-    refuseOptions(line, {"grid"}, "unless a mesh is made of a .vdb file");
     if (!isWritableMesh(output)) {
         refuseOptions(line, {"adaptivity"}, "with a .vdb file as the output");
         return std::nullopt;
     }
-    refuseOptions(line, {"half", "compression"}, "with a mesh as the output");
+    refuseOptions(line, {"half", "compression", "lod"}, "with a mesh as the output");
     return readMeshOutput(line);
 }
 

@@ -17,8 +17,8 @@ namespace bandvox::app {
 /// The option --output of a command that writes a density or a mesh.
 OptionEntry meshOrVdbOutputEntry();
 
-/// These options and those of what writes a mesh, under the heading "Mesh".
-std::vector<OptionEntry> withMeshEntries(std::vector<OptionEntry> entries);
+/// The option --adaptivity.
+OptionEntry adaptivityEntry();
 
 /// Throws Error(ErrorKind::Usage) if one of `options` was given, which has no meaning `where`.
 void refuseOptions(const CommandLine& line, const std::vector<std::string>& options,

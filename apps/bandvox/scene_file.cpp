@@ -155,7 +155,11 @@ std::string SceneFile::beside(const std::string& file) const {
 }
 
 void SceneFile::fail(const std::string& why) const {
-    throw Error(ErrorKind::Input, "'" + mPath.string() + "': " + why);
+    std::string message = "'";
+    message += mPath.string();
+    message += "': ";
+    message += why;
+    throw Error(ErrorKind::Input, message);
 }
 
 }  // namespace bandvox::app

@@ -1,5 +1,7 @@
 #include "volume_options.h"
 
+#include "words.h"
+
 #include <bandvox/core/error.h>
 
 #include <array>
@@ -44,6 +46,22 @@ void readSize(const CommandLine& line, int& resolution, double& voxelSize) {
     }
     resolution = line.wholeNumber("resolution", 1, kFinestResolution, resolution);
     voxelSize = line.number("voxel-size", {.low = 0, .lowOpen = true}, voxelSize);
+}
+
+std::vector<OptionEntry> filterEntries(const ExponentialFilter& standard) {
+    return {
+        {"cutoff", 0, "K", formatNumber(standard.cutoff),
+         "Cutoff k_c of the filter exp(-(k/k_c)^n), in cycles per voxel, 0.01 to 0.5.", "Filter"},
+        {"order", 0, "N", formatNumber(standard.order),
+         "Order n of the filter, 1 to 64. 2 never rings; more keeps more detail and overshoots "
+         "at flat faces.",
+         "Filter"}};
+}
+
+ExponentialFilter readFilter(const CommandLine& line, ExponentialFilter standard) {
+    standard.cutoff = line.number("cutoff", {.low = 0.01, .high = 0.5}, standard.cutoff);
+    standard.order = line.number("order", {.low = 1, .high = 64}, standard.order);
+    return standard;
 }
 
 VdbWriteOptions::Compression readCompression(const CommandLine& line) {

@@ -4,6 +4,9 @@
 #include "option_table.h"
 
 #include <bandvox/grid/density_grid.h>
+#include <bandvox/spectral/exponential_filter.h>
+
+#include <vector>
 
 namespace bandvox::app {
 
@@ -16,6 +19,10 @@ OptionEntry compressionEntry();
 
 /// Sets what --resolution or --voxel-size give. Throws Error(ErrorKind::Usage) if both are there.
 void readSize(const CommandLine& line, int& resolution, double& voxelSize);
+
+/// --cutoff and --order.
+std::vector<OptionEntry> filterEntries(const ExponentialFilter& standard);
+ExponentialFilter readFilter(const CommandLine& line, ExponentialFilter standard = {});
 
 VdbWriteOptions::Compression readCompression(const CommandLine& line);
 

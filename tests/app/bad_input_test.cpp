@@ -66,7 +66,7 @@ TEST_F(BadInput, UnknownKind) {
     writeText(mFolder / "cube", cubeObj());
     expectFailure({"convert", "cube.txt", "-o", "out.vdb"}, 3, {"'.txt'", ".obj", "shape:"});
     expectFailure({"convert", "cube", "-o", "out.vdb"}, 3, {"extension", ".obj"});
-    expectFailure({"convert", "cube.vdb", "-o", "out.vdb"}, 3, {"VDB already"});
+    expectFailure({"convert", "cube.vdb", "-o", "out.vdb"}, 3, {"cube.vdb", "empty"});
     expectFailure({"convert", "shape:blob", "-o", "out.vdb"}, 3, {"blob", "torus"});
     expectFailure({"convert", "shape:", "-o", "out.vdb"}, 3, {"torus"});
     expectFailure({"convert", "", "-o", "out.vdb"}, 3, {});

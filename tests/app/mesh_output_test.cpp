@@ -190,7 +190,9 @@ TEST_F(MeshOutputs, RefusesWhatHasNoMeaning) {
     }
     fail({"convert", "balls.vdb", "-o", "x.ply", "--iso", "x"}, 2, {"--iso"});
     fail({"convert", "none.vdb", "-o", "x.ply"}, 3, {"none.vdb"});
-    fail({"convert", "balls.vdb", "-o", "x.vdb"}, 3, {"VDB already"});
+    fail({"convert", "balls.vdb", "-o", "x.vdb", "--adaptivity", "1"}, 2, {"--adaptivity"});
+    fail({"convert", "balls.vdb", "-o", "x.ply", "--factor", "2"}, 2, {"--factor"});
+    fail({"convert", "cube.obj", "-o", "x.ply", "--lod", "2"}, 2, {"--lod"});
 }
 
 TEST_F(MeshOutputs, AnEmptySurfaceIsNoResult) {

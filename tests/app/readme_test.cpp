@@ -45,8 +45,8 @@ TEST(Readme, RunnableBlocksRun) {
         EXPECT_EQ(result.status, 0) << block << result.err;
     }
     for (const char* name : {"bunny.vdb", "bunny.png", "bunny.exr", "bunny.json", "sharp.vdb",
-                             "voxels.png", "piped.png", "painted.vdb", "bunny.ply", "painted.glb",
-                             "soft.png", "fog.png", "around.03.png"}) {
+                             "voxels.png", "small.vdb", "levels.vdb", "piped.png", "painted.vdb",
+                             "bunny.ply", "painted.glb", "soft.png", "fog.png", "around.03.png"}) {
         EXPECT_TRUE(fs::exists(folder / name)) << name;
     }
 }

@@ -1,0 +1,302 @@
+// bandvox convert for a .vdb file or an array: its grids, filtered and on another lattice if that
+// is asked for.
+
+#include "convert_volume.h"
+
+#include "choose_grid.h"
+#include "command_run.h"
+#include "mesh_output.h"
+#include "standard_streams.h"
+#include "volume_options.h"
+#include "words.h"
+
+#include <bandvox/grid/array_to_grid.h>
+#include <bandvox/grid/density_grid.h>
+#include <bandvox/resample/detail_levels.h>
+#include <bandvox/resample/resample_grid.h>
+#include <bandvox/resample/resample_vectors.h>
+#include <bandvox/source/array_source.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace bandvox::app {
+namespace {
+
+constexpr int kMostLevels = 16;
+
+// Options that say how a solid becomes a density.
+const char* const kOfSolids[] = {"route", "oversample", "overlap", "clamp", "color", "tile"};
+
+/// The lattice that grids are brought to: one of these, or none.
+struct LatticeRequest {
+    std::optional<int> resolution;
+    std::optional<double> voxelSize;
+    std::optional<double> factor;
+    std::optional<std::string> onto;
+
+    bool isSame() const { return !resolution && !voxelSize && !factor && !onto; }
+};
+
+struct VolumeRequest {
+    std::string input;
+    std::filesystem::path output;
+    std::optional<std::string> grid;
+    LatticeRequest lattice;
+    float background = 0;  // of an array
+    bool resamples = false;
+    ResampleOptions resample;
+    std::optional<double> iso;
+    int levels = 0;
+    VdbWriteOptions write;
+};
+
+LatticeRequest readLattice(const CommandLine& line) {
+    LatticeRequest lattice;
+    int count = 0;
+    for (const char* name : {"resolution", "voxel-size", "factor", "onto"}) {
+        if (line.has(name)) ++count;
+    }
+    if (count > 1) {
+        throw Error(ErrorKind::Usage,
+                    "expected one of --resolution, --voxel-size, --factor and --onto, but got " +
+                        std::to_string(count));
+    }
+    if (line.has("resolution")) {
+        lattice.resolution = line.wholeNumber("resolution", 1, 1 << 20, 1);
+    }
+    const Range positive{.low = 0, .lowOpen = true};
+    if (line.has("voxel-size")) lattice.voxelSize = line.number("voxel-size", positive, 1);
+    if (line.has("factor")) {
+        lattice.factor = line.number("factor", {.low = 0.01, .high = 1e4}, 1);
+    }
+    lattice.onto = line.text("onto");
+    return lattice;
+}
+
+VolumeRequest parseVolume(const CommandLine& line) {
+    VolumeRequest request;
+    request.input = line.positional(0);
+    const std::string output = line.requiredText("output");
+    if (readVdbOrMeshOutput(line)) {
+        throw Error(ErrorKind::Usage, "a mesh is made of a .vdb file, and '" + request.input +
+                                          "' is an array; convert it to a .vdb file first");
+    }
+    request.output = outputPath(output);
+    for (const char* name : kOfSolids) {
+        if (!line.has(name)) continue;
+        throw Error(ErrorKind::Usage, std::string("option --") + name +
+                                          " is for meshes and shapes, and '" + request.input +
+                                          "' is a volume already");
+    }
+    request.grid = line.text("grid");
+    if (line.has("background") && !isArrayFile(request.input)) {
+        throw Error(ErrorKind::Usage, "--background is for arrays, and '" + request.input +
+                                          "' says itself what its own is");
+    }
+    request.background =
+        static_cast<float>(line.number("background", {.low = -1e30, .high = 1e30}, 0));
+    request.lattice = readLattice(line);
+    const bool filters = line.has("cutoff") || line.has("order");
+    if (line.has("no-filter")) {
+        if (filters) throw Error(ErrorKind::Usage, "--no-filter and a filter exclude each other");
+        if (request.lattice.isSame()) {
+            throw Error(ErrorKind::Usage,
+                        "--no-filter needs another lattice; expected --voxel-size, --factor, "
+                        "--resolution or --onto with it");
+        }
+        request.resample.filter.reset();
+    } else {
+        request.resample.filter = readFilter(line);
+    }
+    request.resample.tolerance =
+        line.number("tolerance", {.low = 1e-6, .high = 0.05}, request.resample.tolerance);
+    request.resamples = filters || !request.lattice.isSame();
+    if (line.has("iso")) {
+        request.iso = line.number("iso", {}, 0.5);
+    }
+    request.levels = readDetailLevels(line);
+    request.write.half = line.has("half");
+    request.write.compression = readCompression(line);
+    return request;
+}
+
+// A lattice for a grid of any type.
+openvdb::math::Transform::Ptr targetFor(const openvdb::GridBase& grid,
+                                        const LatticeRequest& request,
+                                        const openvdb::math::Transform::ConstPtr& onto) {
+    if (onto) return onto->copy();
+    if (request.voxelSize) return uniformLattice(grid, *request.voxelSize);
+    if (request.resolution) {
+        const openvdb::Vec3d size =
+            grid.voxelSize() * grid.evalActiveVoxelBoundingBox().dim().asVec3d();
+        const double longest = std::max({size[0], size[1], size[2]});
+        return uniformLattice(grid, longest / *request.resolution);
+    }
+    auto target = grid.transform().copy();
+    if (request.factor) target->preScale(*request.factor);
+    return target;
+}
+
+openvdb::math::Transform::ConstPtr readOnto(const LatticeRequest& request) {
+    if (!request.onto) return nullptr;
+    const openvdb::GridPtrVec grids = readGrids(*request.onto);
+    if (grids.empty()) {
+        throw Error(ErrorKind::Input, "'" + *request.onto + "' has no grids, so no lattice");
+    }
+    return grids.front()->transformPtr();
+}
+
+std::string dimensionsOf(const openvdb::GridBase& grid) {
+    const openvdb::Coord size = grid.evalActiveVoxelBoundingBox().dim();
+    std::string text = std::to_string(size.x());
+    text += " x " + std::to_string(size.y()) + " x " + std::to_string(size.z());
+    return text;
+}
+
+void sayGrid(CommandRun& run, const openvdb::GridBase& grid) {
+    run.say("grid     " + grid.getName() + ": " + dimensionsOf(grid) + " voxels of side " +
+            formatNumber(grid.voxelSize().x()) + ", " +
+            formatCount(static_cast<std::int64_t>(grid.activeVoxelCount()), "active voxel",
+                        "active voxels"));
+}
+
+// The grids that are written for one that is read; none if it is of a type that cannot be filtered.
+openvdb::GridPtrVec convertGrid(CommandRun& run, const VolumeRequest& request,
+                                const openvdb::GridBase::Ptr& grid,
+                                const openvdb::math::Transform::ConstPtr& onto) {
+    openvdb::GridPtrVec result;
+    if (grid->activeVoxelCount() == 0 || (!request.resamples && request.levels == 0)) {
+        return {grid};
+    }
+    const auto target = targetFor(*grid, request.lattice, onto);
+    if (const auto vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grid)) {
+        if (!request.resamples) return {grid};
+        return {resampleVectors(vectors, *target, request.resample, run.progress())};
+    }
+    openvdb::FloatGrid::Ptr floats = asFloatGrid(grid);
+    if (!floats) {
+        run.warn({"the grid '" + grid->getName() + "' of type " + grid->valueType() +
+                  " was left away: it cannot be filtered"},
+                 ErrorKind::Result);
+        return {};
+    }
+    if (request.resamples) {
+        floats = resampleGrid(floats, *target, request.resample, run.progress()).grid;
+    }
+    result.push_back(floats);
+    if (request.levels > 0) {
+        for (const auto& level :
+             makeDetailLevels(floats, request.levels, request.resample, run.progress())) {
+            result.push_back(level);
+        }
+    }
+    return result;
+}
+
+// The grid that an array is.
+openvdb::FloatGrid::Ptr readArray(CommandRun& run, const VolumeRequest& request) {
+    const auto source = openArray(request.input);
+    const ArrayInfo& info = source->info();
+    run.say("array    " + std::to_string(info.size.x()) + " x " + std::to_string(info.size.y()) +
+            " x " + std::to_string(info.size.z()) + " values of type " + info.valueType +
+            (info.hasTransform ? "" : ", of which nothing says how large they are") +
+            (info.space.empty() ? "" : ", axes " + info.space));
+    return arrayToGrid(*source, {request.background, 0}, run.progress());
+}
+
+// The grids of the file that are asked for.
+openvdb::GridPtrVec readChosen(CommandRun& run, const VolumeRequest& request) {
+    if (isArrayFile(request.input)) {
+        if (request.grid) {
+            throw Error(ErrorKind::Usage,
+                        "--grid is for .vdb files, and '" + request.input + "' is none");
+        }
+        return {readArray(run, request)};
+    }
+    openvdb::GridPtrVec grids = readGrids(request.input);
+    if (grids.empty()) {
+        throw Error(ErrorKind::Input,
+                    "'" + request.input + "' has no grids; expected one at least");
+    }
+    if (!request.grid) return grids;
+    return {chooseGrid(grids, *request.grid, request.input)};
+}
+
+void setIso(openvdb::GridBase& grid, double iso) {
+    if (auto metadata = densityMetadata(grid)) {
+        metadata->iso = iso;
+        setDensityMetadata(grid, *metadata);
+    }
+}
+
+// Rounds to 16 bits, if that is asked for, and says so in the grid.
+void finishGrid(openvdb::GridBase& grid, const VolumeRequest& request) {
+    if (request.iso) setIso(grid, *request.iso);
+    auto* floats = dynamic_cast<openvdb::FloatGrid*>(&grid);
+    if (!floats || !request.write.half) return;
+    const double change = roundToHalf(*floats);
+    if (auto metadata = densityMetadata(grid)) {
+        metadata->storageError = std::max(metadata->storageError, change);
+        metadata->gridVolume = densityIntegral(*floats);
+        setDensityMetadata(grid, *metadata);
+    }
+}
+
+}  // namespace
+
+std::vector<OptionEntry> latticeEntries() {
+    const std::string lattice = "Volumes as input";
+    return {
+        {"grid", 0, "NAME", "all", "The grid to take.", lattice},
+        {"background", 0, "V", "0",
+         "Of an array (.npy, .nrrd, .mha, ...), the value that is nothing, and not stored.",
+         lattice},
+        {"factor", 0, "S", "1",
+         "Make voxels S times as large. --voxel-size and --resolution make them cubes.", lattice},
+        {"onto", 0, "FILE", "", "Take the lattice of the first grid of another file.", lattice},
+        {"no-filter", 0, "", "",
+         "Only read the grid between its nodes. Otherwise it is filtered for its new lattice: of a "
+         "density that is band-limited already, by what is missing.",
+         lattice},
+        {"lod", 0, "L", "0",
+         "Write L levels of detail beside each grid, each with voxels twice as large.", "Output"},
+    };
+}
+
+int readDetailLevels(const CommandLine& line) {
+    return line.wholeNumber("lod", 0, kMostLevels, 0);
+}
+
+void convertVolume(const CommandLine& line) {
+    const VolumeRequest request = parseVolume(line);
+    CommandRun run(line);
+    AtomicFile output(request.output);
+    const openvdb::math::Transform::ConstPtr onto = readOnto(request.lattice);
+    run.say("read     " + request.input);
+    openvdb::GridPtrVec grids = readChosen(run, request);
+
+    openvdb::GridCPtrVec written;
+    std::int64_t activeVoxels = 0;
+    for (openvdb::GridBase::Ptr& grid : grids) {
+        for (const auto& converted : convertGrid(run, request, grid, onto)) {
+            finishGrid(*converted, request);
+            sayGrid(run, *converted);
+            activeVoxels += static_cast<std::int64_t>(converted->activeVoxelCount());
+            written.push_back(converted);
+        }
+        grid.reset();
+    }
+    run.count("grids", written.size());
+    run.count("active_voxels", activeVoxels);
+    if (activeVoxels == 0) {
+        throw Error(ErrorKind::Result, "nothing would be written: no grid of '" + request.input +
+                                           "' has active voxels that are left");
+    }
+    run.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, written, request.write); });
+}
+
+}  // namespace bandvox::app

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <bandvox/core/progress.h>
+#include <bandvox/resample/resample_grid.h>
+
+#include <openvdb/openvdb.h>
+
+#include <vector>
+
+namespace bandvox {
+
+/// Coarser and coarser copies of a grid: level l, l = 1 to `levels`, has voxels 2^l times as large,
+/// voxel 0 in the same place, and is band-limited for them. Each is made of the one before, which
+/// for a density of this library is as good as from its source (resampleGrid). Named NAME_level_l
+/// and numbered by the metadata MultiResGrid_Level, as OpenVDB's MultiResGrid has it.
+///
+/// Throws as resampleGrid, and Error(ErrorKind::Usage) unless there are 1 to 16 levels.
+std::vector<openvdb::FloatGrid::Ptr> makeDetailLevels(const openvdb::FloatGrid::ConstPtr& grid,
+                                                      int levels,
+                                                      const ResampleOptions& options = {},
+                                                      Progress& progress = silentProgress());
+
+}  // namespace bandvox

@@ -1,0 +1,38 @@
+#include <bandvox/core/error.h>
+#include <bandvox/resample/detail_levels.h>
+
+#include <string>
+
+namespace bandvox {
+
+namespace {
+
+constexpr int kMostLevels = 16;
+
+}  // namespace
+
+std::vector<openvdb::FloatGrid::Ptr> makeDetailLevels(const openvdb::FloatGrid::ConstPtr& grid,
+                                                      int levels, const ResampleOptions& options,
+                                                      Progress& progress) {
+    if (levels < 1 || levels > kMostLevels) {
+        throw Error(ErrorKind::Usage, "there are " + std::to_string(levels) +
+                                          " levels of detail; expected 1 to " +
+                                          std::to_string(kMostLevels));
+    }
+    if (!grid) throw Error(ErrorKind::Usage, "levels of detail need a grid, but got none");
+    std::vector<openvdb::FloatGrid::Ptr> result;
+    openvdb::FloatGrid::ConstPtr finer = grid;
+    for (int level = 1; level <= levels; ++level) {
+        const openvdb::math::Transform::Ptr lattice = finer->transform().copy();
+        lattice->preScale(2.0);
+        const auto coarser = resampleGrid(finer, *lattice, options, progress).grid;
+        coarser->setName(grid->getName() + "_level_" + std::to_string(level));
+        if ((*coarser)["MultiResGrid_Level"]) coarser->removeMeta("MultiResGrid_Level");
+        coarser->insertMeta("MultiResGrid_Level", openvdb::Int64Metadata(level));
+        result.push_back(coarser);
+        finer = coarser;
+    }
+    return result;
+}
+
+}  // namespace bandvox

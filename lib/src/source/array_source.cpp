@@ -1,0 +1,231 @@
+#include "source/array_header.h"
+
+#include <bandvox/core/error.h>
+#include <bandvox/source/array_source.h>
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <new>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+namespace bandvox {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string lowerExtension(const fs::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+// The bytes of a header's files, one after another, without what is to be skipped; unpacked.
+class ValueBytes {
+  public:
+    explicit ValueBytes(const ArrayHeader& header) : mHeader(header) {
+        std::memset(&mZlib, 0, sizeof mZlib);
+    }
+    ~ValueBytes() {
+        if (mUnpacks) inflateEnd(&mZlib);
+    }
+    ValueBytes(const ValueBytes&) = delete;
+    ValueBytes& operator=(const ValueBytes&) = delete;
+
+    // As many as there are, up to `count`.
+    std::size_t read(char* to, std::size_t count) {
+        std::size_t done = 0;
+        while (done < count) {
+            if (!mIsOpen && !openNext()) break;
+            const std::size_t some = mHeader.encoding == ArrayHeader::Encoding::Zlib
+                                         ? unpack(to + done, count - done)
+                                         : readPlain(to + done, count - done);
+            done += some;
+            if (some == 0) close();
+        }
+        return done;
+    }
+
+    const fs::path& file() const { return mHeader.files[mFile == 0 ? 0 : mFile - 1]; }
+
+  private:
+    bool openNext() {
+        if (mFile == mHeader.files.size()) return false;
+        const fs::path& path = mHeader.files[mFile++];
+        mStream = std::ifstream(path, std::ios::binary);
+        std::error_code ignored;
+        if (!mStream || fs::is_directory(path, ignored)) {
+            failArray(path, "it cannot be opened for reading");
+        }
+        for (std::int64_t line = 0; line < mHeader.skipLines; ++line) {
+            mStream.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+        }
+        skipBytes(path);
+        if (!mStream) failArray(path, "it ends before its values");
+        if (mHeader.encoding == ArrayHeader::Encoding::Zlib) beginUnpacking();
+        mIsOpen = true;
+        return true;
+    }
+
+    void skipBytes(const fs::path& path) {
+        if (mHeader.skipBytes >= 0) {
+            mStream.seekg(mHeader.skipBytes, std::ios::cur);
+            return;
+        }
+        // All but the values.
+        const openvdb::Coord& size = mHeader.info.size;
+        const std::int64_t bytes = std::int64_t(size[0]) * size[1] * size[2] *
+                                   static_cast<std::int64_t>(bytesOf(mHeader.type));
+        std::error_code error;
+        const auto length = static_cast<std::int64_t>(fs::file_size(path, error));
+        if (error || length < bytes) failArray(path, "it is shorter than its values are");
+        mStream.seekg(length - bytes);
+    }
+
+    std::size_t readPlain(char* to, std::size_t count) {
+        mStream.read(to, static_cast<std::streamsize>(count));
+        return static_cast<std::size_t>(mStream.gcount());
+    }
+
+    void beginUnpacking() {
+        constexpr int kZlibOrGzip = 15 + 32;
+        if (mUnpacks) inflateEnd(&mZlib);
+        std::memset(&mZlib, 0, sizeof mZlib);
+        if (inflateInit2(&mZlib, kZlibOrGzip) != Z_OK) throw std::bad_alloc();
+        mUnpacks = true;
+    }
+
+    std::size_t unpack(char* to, std::size_t count) {
+        constexpr std::size_t kMost = std::size_t(1) << 30;
+        mZlib.next_out = reinterpret_cast<Bytef*>(to);
+        const auto room = static_cast<uInt>(std::min(count, kMost));
+        mZlib.avail_out = room;
+        while (mZlib.avail_out == room) {
+            if (mZlib.avail_in == 0) {
+                mZlib.avail_in = static_cast<uInt>(readPlain(mPacked.data(), mPacked.size()));
+                mZlib.next_in = reinterpret_cast<Bytef*>(mPacked.data());
+                if (mZlib.avail_in == 0) return 0;
+            }
+            const int status = inflate(&mZlib, Z_NO_FLUSH);
+            if (status == Z_STREAM_END) break;
+            if (status != Z_OK && status != Z_BUF_ERROR) {
+                failArray(file(), "its compressed values are damaged");
+            }
+        }
+        return room - mZlib.avail_out;
+    }
+
+    void close() {
+        mStream.close();
+        mIsOpen = false;
+        mZlib.avail_in = 0;
+    }
+
+    const ArrayHeader& mHeader;
+    std::size_t mFile = 0;  // the next one
+    bool mIsOpen = false;
+    std::ifstream mStream;
+    std::array<char, 1 << 16> mPacked{};
+    z_stream mZlib;
+    bool mUnpacks = false;
+};
+
+class FileArray final : public ArraySource {
+  public:
+    explicit FileArray(ArrayHeader header)
+        : ArraySource(header.info), mHeader(std::move(header)), mBytes(mHeader) {}
+
+    void readSlices(std::span<float> values) override {
+        if (mHeader.encoding == ArrayHeader::Encoding::Text) {
+            for (float& value : values) value = nextNumber();
+            return;
+        }
+        constexpr std::size_t kTogether = 1 << 18;
+        const std::size_t bytes = bytesOf(mHeader.type);
+        mStored.resize(kTogether * bytes);
+        while (!values.empty()) {
+            const std::span<float> some = values.first(std::min(values.size(), kTogether));
+            values = values.subspan(some.size());
+            if (mBytes.read(mStored.data(), some.size() * bytes) != some.size() * bytes)
+                failShort();
+            toFloats(mStored.data(), some, mHeader.type, mHeader.bigEndian);
+        }
+    }
+
+  private:
+    [[noreturn]] void failShort() const {
+        failArray(mHeader.info.name,
+                  "it ends too early: there are fewer values than its header "
+                  "says");
+    }
+
+    // The next number of a text.
+    float nextNumber() {
+        std::string word;
+        char c = 0;
+        const auto isBetween = [&c] {
+            return c == ',' || std::isspace(static_cast<unsigned char>(c));
+        };
+        while (mBytes.read(&c, 1) == 1) {
+            if (!isBetween()) {
+                if (word.size() < 64) word += c;
+            } else if (!word.empty()) {
+                break;
+            }
+        }
+        if (word.empty()) failShort();
+        float number = 0;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+        if (error != std::errc() || end != word.data() + word.size()) {
+            failArray(mHeader.info.name, "it holds '" + word + "'; expected a number");
+        }
+        return number;
+    }
+
+    ArrayHeader mHeader;
+    ValueBytes mBytes;
+    std::vector<char> mStored;
+};
+
+}  // namespace
+
+bool isArrayFile(const fs::path& path) {
+    const std::string extension = lowerExtension(path);
+    return extension == ".npy" || extension == ".nrrd" || extension == ".nhdr" ||
+           extension == ".mha" || extension == ".mhd";
+}
+
+std::unique_ptr<ArraySource> openArray(const fs::path& path) {
+    const std::string extension = lowerExtension(path);
+    if (!isArrayFile(path)) {
+        failArray(path, "its extension is \"" + extension +
+                            "\"; expected .npy, .nrrd, .nhdr, .mha or .mhd");
+    }
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored)) failArray(path, "it is a folder; expected a file");
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) failArray(path, "it cannot be opened for reading");
+    ArrayHeader header = extension == ".npy" ? readNpyHeader(path, stream)
+                         : extension == ".nrrd" || extension == ".nhdr"
+                             ? readNrrdHeader(path, stream)
+                             : readMetaImageHeader(path, stream);
+    header.info.name = path.string();
+    header.info.valueType = nameOf(header.type);
+    if (header.info.toWorld.getMat3().det() == 0) {
+        failArray(path, "its axes are not three different directions");
+    }
+    return std::make_unique<FileArray>(std::move(header));
+}
+
+}  // namespace bandvox
