@@ -17,6 +17,8 @@
 #include <bandvox/resample/resample_vectors.h>
 #include <bandvox/source/array_source.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
