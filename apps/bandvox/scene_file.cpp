@@ -103,7 +103,9 @@ std::vector<OptionValues> SceneFile::list(const std::string& list,
     if (!groups.is_array()) fail(list + " is no list; expected [ { ... }, ... ]");
     for (const nlohmann::json& settings : groups) {
         std::string where = list;
-        where += "[" + std::to_string(all.size()) + "]";
+        where += '[';
+        where += std::to_string(all.size());
+        where += ']';
         all.push_back(read(settings, where, names));
     }
     return all;

@@ -49,7 +49,9 @@ void expectSameAsBytes(const ByteSource& source, const std::string& bytes, std::
         }
         ASSERT_TRUE(stream) << i;
         at = stream.tellg();
-        if (i % 4 != 3) ASSERT_EQ(at, to);
+        if (i % 4 != 3) {
+            ASSERT_EQ(at, to);
+        }
         const auto count =
             static_cast<std::size_t>(i % 7 == 0 ? random() % 2'000'000 : random() % 300);
         part.resize(count);

@@ -129,7 +129,9 @@ TEST_F(ImageFile, WritesTheChannelsAskedFor) {
         EXPECT_EQ(names, asked.names);
         std::vector<float> data(std::size_t(35) * names.size());
         ASSERT_TRUE(input->read_image(0, 0, 0, -1, OIIO::TypeDesc::FLOAT, data.data()));
-        if (names.size() == 1) EXPECT_EQ(data, image.depth);
+        if (names.size() == 1) {
+            EXPECT_EQ(data, image.depth);
+        }
         // A .png has colour whatever is asked for.
         writeImage(mFolder / "some.png", image, asked.channels);
     }
