@@ -51,7 +51,7 @@ std::string readDictionary(const std::filesystem::path& path, std::istream& stre
     if (!stream || std::string_view(start.data(), kMagic.size()) != kMagic) {
         failArray(path, "it is no .npy file: it does not begin with \\x93NUMPY");
     }
-    const int version = start[6];
+    const int version = static_cast<unsigned char>(start[6]);
     if (version < 1 || version > 3) {
         failArray(path,
                   "it is of version " + std::to_string(version) + " of .npy; expected 1 to 3");
