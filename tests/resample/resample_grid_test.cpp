@@ -252,6 +252,23 @@ TEST(ResampleGrid, ReadsBetweenNodesWithoutAFilter) {
     EXPECT_LE(largestDifference(*back, *density.grid), 2e-4);
 }
 
+// What a lattice holds ends at its own cutoff along axes that became coarser, and where the
+// source's did if all became finer.
+TEST(ResampleGrid, SaysWhereTheSpectrumEnds) {
+    const auto density = densityOf("shape:torus", 0.1);
+    const auto cutoff = [&](const Vec3d& factors, bool filters) {
+        const auto target = density.grid->transform().copy();
+        target->preScale(factors);
+        ResampleOptions options;
+        if (!filters) options.filter.reset();
+        return densityMetadata(*resampleGrid(density.grid, *target, options).grid)->cutoff;
+    };
+    EXPECT_NEAR(cutoff(Vec3d(0.5), true), 0.08, 1e-9);
+    EXPECT_NEAR(cutoff(Vec3d(0.5, 1, 2), true), 0.16, 1e-9);
+    EXPECT_NEAR(cutoff(Vec3d(0.5), false), 0.08, 1e-9);
+    EXPECT_NEAR(cutoff(Vec3d(1, 1, 1.5), false), 0.24, 1e-9);
+}
+
 TEST(ResampleGrid, TakesAnEmptyGrid) {
     const auto result = resampleGrid(FloatGrid::create(3.0F), *latticeOf(scaled(Vec3d(2.0))));
     EXPECT_TRUE(result.grid->empty());

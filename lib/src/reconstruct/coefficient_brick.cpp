@@ -2,6 +2,7 @@
 
 #include "core/instruction_sets.h"
 #include "core/lanes.h"
+#include "grid/copy_box.h"
 
 #include <algorithm>
 #include <span>
@@ -10,60 +11,12 @@ namespace bandvox {
 
 namespace {
 
-using Leaf = openvdb::FloatTree::LeafNodeType;
-constexpr int kLeafSide = Leaf::DIM;
-
 int nodesAlong(const SpreadingKernel& kernel) {
     return CoefficientBrick::kSide + kernel.width();
 }
 
 int pitchOf(const SpreadingKernel& kernel) {
     return CoefficientBrick::kSide + kernel.paddedWidth();
-}
-
-// Copies the cube of `side` voxels from `origin` on, z fastest, a leaf at a time. Returns true if
-// all are the same.
-bool copyLattice(const openvdb::FloatGrid& grid, const openvdb::Coord& origin, int side,
-                 std::vector<float>& lattice) {
-    lattice.resize(static_cast<std::size_t>(side) * side * side);
-    const openvdb::CoordBBox cube = openvdb::CoordBBox::createCube(origin, side);
-    const openvdb::Coord firstLeaf = cube.min() & ~(kLeafSide - 1);
-    auto accessor = grid.getConstAccessor();
-    const float first = accessor.getValue(origin);
-    bool isUniform = true;
-    openvdb::Coord block;
-    for (block[0] = firstLeaf[0]; block[0] <= cube.max()[0]; block[0] += kLeafSide) {
-        for (block[1] = firstLeaf[1]; block[1] <= cube.max()[1]; block[1] += kLeafSide) {
-            for (block[2] = firstLeaf[2]; block[2] <= cube.max()[2]; block[2] += kLeafSide) {
-                openvdb::CoordBBox part = openvdb::CoordBBox::createCube(block, kLeafSide);
-                part.intersect(cube);
-                const Leaf* leaf = accessor.probeConstLeaf(block);
-                const float* values = leaf ? leaf->buffer().data() : nullptr;
-                const float tile = values ? first : accessor.getValue(block);
-                isUniform = isUniform && tile == first;
-                const int length = part.dim()[2];
-                int different = 0;
-                for (int x = part.min()[0]; x <= part.max()[0]; ++x) {
-                    for (int y = part.min()[1]; y <= part.max()[1]; ++y) {
-                        const openvdb::Coord start(x, y, part.min()[2]);
-                        const openvdb::Coord at = start - origin;
-                        float* row =
-                            &lattice[(static_cast<std::size_t>(at[0]) * side + at[1]) * side +
-                                     at[2]];
-                        if (!values) {
-                            std::fill_n(row, length, tile);
-                            continue;
-                        }
-                        const float* from = values + Leaf::coordToOffset(start);
-                        std::copy_n(from, length, row);
-                        for (int z = 0; z < length; ++z) different |= from[z] != first ? 1 : 0;
-                    }
-                }
-                isUniform = isUniform && different == 0;
-            }
-        }
-    }
-    return isUniform;
 }
 
 // `count` rows of `length` outputs each, so far apart.
@@ -155,8 +108,12 @@ CoefficientBrick::CoefficientBrick(const openvdb::FloatGrid& grid, const openvdb
     const int reach = design.reach();
     const int side = mNodes + 2 * reach;
     const openvdb::Coord origin(brick[0] * kSide, brick[1] * kSide, brick[2] * kSide);
-    if (copyLattice(grid, origin.offsetBy(firstNode(design.kernel) - reach), side,
-                    scratch.lattice)) {
+    const std::size_t rowLength = side, plane = rowLength * side;
+    scratch.lattice.resize(plane * side);
+    const openvdb::CoordBBox cube =
+        openvdb::CoordBBox::createCube(origin.offsetBy(firstNode(design.kernel) - reach), side);
+    const openvdb::tree::ValueAccessor<const openvdb::FloatTree, false> values(grid.tree());
+    if (copyBox(values, cube, scratch.lattice.data(), plane, rowLength)) {
         mConstant = scratch.lattice.front();
         return;
     }
@@ -171,7 +128,7 @@ CoefficientBrick::CoefficientBrick(const openvdb::FloatGrid& grid, const openvdb
             convolve(in, out, rows, stride, design.prefilter);
         }
     };
-    const std::size_t rowLength = side, plane = rowLength * side, nodes = mNodes, pitch = mPitch;
+    const std::size_t nodes = mNodes, pitch = mPitch;
     scratch.filtered.resize(nodes * plane);
     pass(scratch.lattice.data(), scratch.filtered.data(), {1, nodes * plane, 0, 0}, plane);
     pass(scratch.filtered.data(), scratch.lattice.data(),

@@ -44,7 +44,7 @@ LatticeMap::LatticeMap(const openvdb::math::Transform& source,
     openvdb::Mat3d directions;
     openvdb::Vec3d squares;
     openvdb::math::diagonalizeSymmetricMatrix(square, directions, squares);
-    mLeastStep = std::sqrt(std::min({squares[0], squares[1], squares[2]}));
+    mLargestStep = std::sqrt(std::max({squares[0], squares[1], squares[2]}));
     openvdb::Mat3d limited = openvdb::Mat3d::zero();
     for (int axis = 0; axis < 3; ++axis) {
         squares[axis] = std::max(squares[axis], 1.0);

@@ -26,8 +26,8 @@ class LatticeMap {
     /// 1: the factors by which frequencies rise.
     double coarsest() const { return mCoarsest; }
     double finest() const { return mFinest; }
-    /// The same without the limit: the least length of Aᵀk for |k| = 1.
-    double leastStep() const { return mLeastStep; }
+    /// The largest step without the limit.
+    double largestStep() const { return mLargestStep; }
 
     /// True if voxels lie on voxels.
     bool isAligned() const { return mIsAligned; }
@@ -37,7 +37,7 @@ class LatticeMap {
   private:
     openvdb::Mat4d mToSource, mToTarget;
     openvdb::Mat3d mSquare;  // kᵀ mSquare k = frequency²
-    double mCoarsest, mFinest, mLeastStep;
+    double mCoarsest, mFinest, mLargestStep;
     bool mIsAligned, mIsDiagonal;
 };
 

@@ -182,9 +182,8 @@ std::optional<ExponentialFilter> filterOf(const std::optional<DensityMetadata>& 
 
 // Says of a new grid what is in it.
 void describeResult(openvdb::FloatGrid& grid, const openvdb::FloatGrid& source,
-                    const ResampleOptions& options, double leastStep) {
+                    const ResampleOptions& options, double largestStep) {
     static_cast<openvdb::MetaMap&>(grid) = static_cast<const openvdb::MetaMap&>(source);
-    // Where a new lattice is the finer one, what it holds ends where the old one's did.
     std::optional<DensityMetadata> metadata = densityMetadata(source);
     const std::optional<ExponentialFilter> kept =
         options.filter ? options.filter : filterOf(metadata);
@@ -195,7 +194,10 @@ void describeResult(openvdb::FloatGrid& grid, const openvdb::FloatGrid& source,
         metadata->route = "filtered";
     }
     metadata->order = kept->order;
-    metadata->cutoff = std::clamp(kept->cutoff * std::min(leastStep, 1.0), 0.01, 0.5);
+    // On a lattice that is finer along all axes, what it holds ends where the old one's did;
+    // without a filter that is so on any lattice.
+    const double step = options.filter ? std::min(largestStep, 1.0) : largestStep;
+    metadata->cutoff = std::clamp(kept->cutoff * step, 0.01, 0.5);
     metadata->tolerance = std::max(metadata->tolerance, options.tolerance);
     metadata->gridVolume = densityIntegral(grid);
     setDensityMetadata(grid, *metadata);
@@ -233,7 +235,7 @@ ResampleResult resampleGrid(const openvdb::FloatGrid::ConstPtr& source,
     result.amplitude = last.amplitude();
     result.grid = runStep(last, target, result, progress);
     describeResult(*result.grid, *source, options,
-                   LatticeMap(source->transform(), target).leastStep());
+                   LatticeMap(source->transform(), target).largestStep());
     return result;
 }
 

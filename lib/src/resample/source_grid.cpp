@@ -1,5 +1,7 @@
 #include "resample/source_grid.h"
 
+#include "grid/copy_box.h"
+
 #include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>
 #include <bandvox/core/parallel.h>
@@ -101,35 +103,8 @@ std::optional<ConstantRegion> SourceReader::constantIn(const openvdb::CoordBBox&
 }
 
 void SourceReader::copy(const SourceCube& cube, float* to) const {
-    const openvdb::CoordBBox& box = cube.box;
-    const openvdb::Coord& origin = box.min();
-    const openvdb::Coord begin = origin & ~(kLeafSide - 1);
-    openvdb::Coord block;
-    for (block[0] = begin[0]; block[0] <= box.max()[0]; block[0] += kLeafSide) {
-        for (block[1] = begin[1]; block[1] <= box.max()[1]; block[1] += kLeafSide) {
-            for (block[2] = begin[2]; block[2] <= box.max()[2]; block[2] += kLeafSide) {
-                openvdb::CoordBBox part = openvdb::CoordBBox::createCube(block, kLeafSide);
-                part.intersect(box);
-                const SourceLeaf* leaf = mAccessor.probeConstLeaf(block);
-                const float* values = leaf ? leaf->buffer().data() : nullptr;
-                const float tile = leaf ? 0.0F : mAccessor.getValue(block);
-                const int length = part.dim()[2];
-                for (int x = part.min()[0]; x <= part.max()[0]; ++x) {
-                    for (int y = part.min()[1]; y <= part.max()[1]; ++y) {
-                        const openvdb::Coord start(x, y, part.min()[2]);
-                        const openvdb::Coord at = start - origin;
-                        float* row =
-                            to + (std::size_t(at[0]) * cube.yCount + at[1]) * cube.zStride + at[2];
-                        if (values) {
-                            std::copy_n(values + SourceLeaf::coordToOffset(start), length, row);
-                        } else {
-                            std::fill_n(row, length, tile);
-                        }
-                    }
-                }
-            }
-        }
-    }
+    const std::size_t row = cube.zStride;
+    copyBox(mAccessor, cube.box, to, row * cube.yCount, row);
 }
 
 std::vector<openvdb::Coord> blocksNear(const openvdb::FloatGrid& grid, const LatticeMap& map,
