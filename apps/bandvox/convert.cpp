@@ -2,11 +2,11 @@
 
 #include "command_run.h"
 #include "commands.h"
-#include "convert_solid.h"
-#include "convert_to_mesh.h"
+#include "convert_frames.h"
+#include "convert_job.h"
+#include "convert_settings.h"
 #include "convert_volume.h"
 #include "mesh_output.h"
-#include "solid_input.h"
 #include "volume_options.h"
 #include "words.h"
 
@@ -70,6 +70,7 @@ const CommandTable& convertTable() {
             compressionEntry(),
             adaptivityEntry(),
         });
+        add(frameEntries());
         return CommandTable{
             "convert",
             "Turn a mesh, a built-in shape or a volume into a band-limited volume or its surface.",
@@ -98,19 +99,22 @@ const CommandTable& convertTable() {
                 {"bandvox convert spot.vdb -o spot.ply", "The surface of that, with its colours."},
                 {"bandvox convert part.stl -o part.vdb --voxel-size 0.1 --strict",
                  "Voxels of a given size, and no result if anything about the mesh is doubtful."},
-            }};
+                {"bandvox convert sim.####.obj -o sim.####.vdb --frames 1-100 --skip-existing",
+                 "A hundred frames, but for those that are done already."},
+            },
+            {{"resolution", "voxel-size", "factor", "onto"},
+             {"no-filter", "cutoff"},
+             {"no-filter", "order"}}};
     }();
     return table;
 }
 
-void runConvert(const CommandLine& line) {
-    if (convertsGridToMesh(line)) return convertGridToMesh(line);
-    const std::string& input = line.positional(0);
-    if (!isShape(input) && (extensionOf(input) == ".vdb" || isArrayFile(input))) {
-        convertVolume(line);
-    } else {
-        convertSolid(line);
-    }
+void runConvert(const CommandLine& given) {
+    const CommandLine line = withLikedSettings(given);
+    if (asksForFrames(line)) return convertFrames(line);
+    CommandRun run(line);
+    ConvertJob job(run, line);
+    convertOne(job);
 }
 
 }  // namespace bandvox::app

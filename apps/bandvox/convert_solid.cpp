@@ -51,8 +51,10 @@ struct ConvertRequest {
     DensityOptions density;
     bool color = false;
     int levels = 0;  ///< coarser ones beside the density
-    std::optional<int> oversample;
-    std::optional<double> samplingTolerance;  ///< if it was asked for
+    bool oversampleGiven = false;
+    int samplesPerSide = FieldDensityOptions().oversample;  // of the sampled route
+    int rowsPerVoxel = SoupDensityOptions().rowsPerVoxel;   // of that of the winding number
+    std::optional<double> samplingTolerance;                ///< if it was asked for
     VdbWriteOptions write;
     std::optional<MeshOutput> mesh;  ///< instead of the density
 };
@@ -80,14 +82,16 @@ void readRoute(const CommandLine& line, ConvertRequest& request) {
                         "--oversample has no meaning on the exact route; expected "
                         "--route sampled with a shape, or another --route with a mesh");
         }
-        request.oversample = line.wholeNumber("oversample", 1, kMostOversample, 1);
+        request.oversampleGiven = true;
     }
+    request.samplesPerSide =
+        line.wholeNumber("oversample", 1, kMostOversample, request.samplesPerSide);
+    request.rowsPerVoxel = line.wholeNumber("oversample", 1, kMostOversample, request.rowsPerVoxel);
     // Sampling is by far the largest error, so what is allowed is allowed to it.
     DensityOptions& density = request.density;
-    if (!line.has("tolerance")) return;
     const double tolerance =
         line.number("tolerance", {.low = 1e-6, .high = 0.05}, density.tolerance);
-    request.samplingTolerance = tolerance;
+    if (line.has("tolerance")) request.samplingTolerance = tolerance;
     density.tolerance = isSampling ? std::min(density.tolerance, tolerance) : tolerance;
 }
 
@@ -216,7 +220,7 @@ DensityResult meshToDensity(CommandRun& run, const ConvertRequest& request, Mesh
     if (mesh.soup.triangles.empty()) {
         const MeshSource source(mesh.name, std::move(mesh.solid));
         result = surfaceToDensity(source, request.density, run.progress());
-        if (request.oversample) {
+        if (request.oversampleGiven) {
             result.warnings.push_back(
                 "--oversample was not used: caps close the whole mesh, which took the exact route");
         }
@@ -224,7 +228,7 @@ DensityResult meshToDensity(CommandRun& run, const ConvertRequest& request, Mesh
         SoupDensityOptions options;
         options.density = request.density;
         options.density.tolerance = std::min(options.density.tolerance, DensityOptions().tolerance);
-        options.rowsPerVoxel = request.oversample.value_or(options.rowsPerVoxel);
+        options.rowsPerVoxel = request.rowsPerVoxel;
         options.samplingTolerance = request.samplingTolerance.value_or(options.samplingTolerance);
         result = soupToDensity({mesh.name, std::move(mesh.soup), std::move(mesh.solid)}, options,
                                run.progress());
@@ -253,7 +257,7 @@ DensityResult shapeToDensity(CommandRun& run, const ConvertRequest& request) {
     }
     FieldDensityOptions options;
     options.density = request.density;
-    options.oversample = request.oversample.value_or(options.oversample);
+    options.oversample = request.samplesPerSide;
     options.samplingTolerance = request.samplingTolerance.value_or(options.samplingTolerance);
     DensityResult result = fieldToDensity(*makeShapeField(request.input), options, run.progress());
     // Of a shape, unlike other fields, the volume is known.
@@ -307,10 +311,11 @@ std::vector<openvdb::FloatGrid::Ptr> makeLevels(CommandRun& run, const ConvertRe
 
 }  // namespace
 
-void convertSolid(const CommandLine& line) {
-    const ConvertRequest request = parseConvert(line);
+void convertSolid(ConvertJob& job) {
+    const ConvertRequest request = parseConvert(job.line());
     requireMeshOrShape("convert", request.input);
-    CommandRun run(line);
+    if (!job.begin()) return;
+    CommandRun& run = job.run();
     AtomicFile output(request.output);
 
     ConvertedGrids grids = isShape(request.input) ? ConvertedGrids{shapeToDensity(run, request), {}}
@@ -336,7 +341,7 @@ void convertSolid(const CommandLine& line) {
         for (const auto& level : makeLevels(run, request, result.grid)) written.push_back(level);
     }
     if (grids.color) written.push_back(grids.color->grid);
-    run.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, written, request.write); });
+    job.writeVolume(output, written, request.write);
 }
 
 }  // namespace bandvox::app

@@ -23,7 +23,8 @@ bool convertsGridToMesh(const CommandLine& line) {
            isWritableMesh(line.text("output").value_or(""));
 }
 
-void convertGridToMesh(const CommandLine& line) {
+void convertGridToMesh(ConvertJob& job) {
+    const CommandLine& line = job.line();
     refuseOptions(line,
                   {"resolution", "voxel-size", "cutoff", "order", "tolerance", "tile", "route",
                    "oversample", "overlap", "clamp", "half", "compression", "background", "factor",
@@ -32,7 +33,8 @@ void convertGridToMesh(const CommandLine& line) {
     const std::string& input = line.positional(0);
     MeshOutput options = readMeshOutput(line);
     if (line.has("iso")) options.iso = line.number("iso", {}, 0);
-    CommandRun run(line);
+    if (!job.begin()) return;
+    CommandRun& run = job.run();
     AtomicFile output(options.path);
 
     openvdb::GridPtrVec grids;
