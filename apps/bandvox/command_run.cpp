@@ -40,6 +40,7 @@ ProgressDisplay displayFor(const CommandLine& line) {
 
 /// True if writing one of them changes the other.
 bool isSameFile(const fs::path& a, const fs::path& b) {
+    if (a.empty() || b.empty()) return false;
     std::error_code error;
     const fs::path first = followLinks(a);
     const fs::path second = followLinks(b);

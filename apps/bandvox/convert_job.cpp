@@ -6,6 +6,8 @@
 #include "words.h"
 
 #include <bandvox/core/sha256.h>
+#include <bandvox/mesh/write_mesh.h>
+#include <bandvox/source/read_mesh.h>
 #include <bandvox/source/shapes.h>
 
 #include <nlohmann/json.hpp>
@@ -19,7 +21,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kInputKey = "bandvox_input";
+// What a file says of how it was made. Reads all of it, so that a damaged one is found out.
+ConvertStamp readStamp(const std::string& file, Progress& progress) {
+    if (!isWritableMesh(file)) return stampOf(readVdb(file));
+    readMesh(file, progress);
+    return fromNotes(readMeshNotes(file));
+}
 
 // The files that two descriptions of an input tell of, without what they share.
 std::set<std::string> changedFiles(const std::string& before, const std::string& now) {
@@ -72,6 +79,12 @@ bool ConvertJob::begin() {
                     "--skip-existing cannot tell whether the standard input is the same as before; "
                     "expected a file as the input");
     }
+    if (!holdsStamp(output)) {
+        throw Error(ErrorKind::Usage,
+                    "--skip-existing needs a kind of file that says how it was "
+                    "made, and '" +
+                        output + "' is none; expected " + "another one, as .vdb or .ply");
+    }
     std::error_code ignored;
     const fs::path path = outputPath(output);
     if (!fs::exists(path, ignored) || !fs::is_regular_file(path, ignored)) return true;
@@ -86,40 +99,27 @@ bool ConvertJob::begin() {
 
 void ConvertJob::writeVolume(AtomicFile& output, const openvdb::GridCPtrVec& grids,
                              const VdbWriteOptions& options) const {
-    openvdb::GridCPtrVec stamped;
-    for (const openvdb::GridBase::ConstPtr& grid : grids) {
-        const auto copy = openvdb::ConstPtrCast<openvdb::GridBase>(grid->copyGrid());
-        for (const char* key : {kSettingsKey, kInputKey}) {
-            if ((*copy)[key]) copy->removeMeta(key);
-        }
-        copy->insertMeta(kSettingsKey, openvdb::StringMetadata(mStamp.settings));
-        if (!mStamp.input.empty()) {
-            copy->insertMeta(kInputKey, openvdb::StringMetadata(mStamp.input));
-        }
-        stamped.push_back(copy);
-    }
-    mRun.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, stamped, options); });
+    const openvdb::GridCPtrVec written = stamped(grids, mStamp);
+    mRun.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, written, options); });
 }
 
 std::optional<std::string> whyToRedo(const std::string& output, const ConvertStamp& stamp,
                                      Progress& progress) {
-    openvdb::GridPtrVec grids;
+    ConvertStamp found;
     try {
         const ProgressStage stage(progress, "check output", 0);
-        grids = readVdb(output);
+        found = readStamp(output, progress);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::Input) throw;
         return std::string(error.what());
     }
     progress.throwIfInterrupted();
-    const auto settings = settingsOf(grids);
-    if (!settings) return "it does not say with which settings it was made";
-    const std::string difference = settingsDifference(*settings, stamp.settings);
+    if (found.settings.empty()) return "it does not say with which settings it was made";
+    const std::string difference = settingsDifference(found.settings, stamp.settings);
     if (!difference.empty()) return difference;
-    const auto input = grids.front()->getMetadata<openvdb::StringMetadata>(kInputKey);
-    if (!input) return "it does not say from which input it was made";
-    if (input->value() == stamp.input) return std::nullopt;
-    const std::set<std::string> changed = changedFiles(input->value(), stamp.input);
+    if (found.input.empty()) return "it does not say from which input it was made";
+    if (found.input == stamp.input) return std::nullopt;
+    const std::set<std::string> changed = changedFiles(found.input, stamp.input);
     return "the input has changed: " + joined({changed.begin(), changed.end()}, ", ");
 }
 

@@ -2,6 +2,7 @@
 
 #include "command_line.h"
 #include "command_run.h"
+#include "convert_stamp.h"
 
 #include <bandvox/grid/density_grid.h>
 
@@ -11,14 +12,6 @@
 #include <string>
 
 namespace bandvox::app {
-
-/// What a file made by `convert` says of how it was made.
-struct ConvertStamp {
-    std::string settings;  ///< as convert_settings.h has it
-    std::string input;     ///< for each file of the input a line "SHA-256 BYTES NAME", the name
-                           ///< without its folder; the name alone of a built-in shape; empty of
-                           ///< the standard input
-};
 
 /// One input that becomes one output.
 class ConvertJob {

@@ -1,6 +1,7 @@
 #include "convert_settings.h"
 
 #include "command_run.h"
+#include "convert_stamp.h"
 #include "convert_to_mesh.h"
 #include "mesh_output.h"
 #include "standard_streams.h"
@@ -19,6 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <filesystem>
 #include <map>
 #include <sstream>
 #include <vector>
@@ -244,26 +246,22 @@ std::string settingsDifference(const std::string& before, const std::string& now
     return {};
 }
 
-std::optional<std::string> settingsOf(const openvdb::GridPtrVec& grids) {
-    for (const auto& grid : grids) {
-        const auto text = grid->getMetadata<openvdb::StringMetadata>(kSettingsKey);
-        if (text) return text->value();
-    }
-    return std::nullopt;
-}
-
 CommandLine withLikedSettings(const CommandLine& line) {
     const auto file = line.text("like");
     if (!file) return line;
-    const openvdb::GridPtrVec grids = readGrids(*file);
-    const auto text = settingsOf(grids);
-    if (!text) {
+    const bool isMesh = isWritableMesh(*file);
+    if (isMesh && !std::filesystem::exists(*file)) {
+        throw Error(ErrorKind::Input, *file + ": there is no such file");
+    }
+    const openvdb::GridPtrVec grids = isMesh ? openvdb::GridPtrVec() : readGrids(*file);
+    const std::string text = (isMesh ? fromNotes(readMeshNotes(*file)) : stampOf(grids)).settings;
+    if (text.empty()) {
         throw Error(ErrorKind::Input, "'" + *file +
                                           "' holds no settings; expected a file that bandvox "
                                           "convert has written");
     }
     std::string head;
-    const Settings settings = parseSettings(*text, head);
+    const Settings settings = parseSettings(text, head);
     const Conversion conversion = conversionOf(line);
     const bool isSame = head.starts_with(std::string("# ") + nameOf(conversion) + " by ");
     const Settings known = defaultsOf(line, conversion);

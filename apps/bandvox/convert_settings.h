@@ -2,9 +2,6 @@
 
 #include "command_line.h"
 
-#include <openvdb/openvdb.h>
-
-#include <optional>
 #include <string>
 
 // The settings that `bandvox convert` has used, as its output tells them.
@@ -14,9 +11,6 @@
 // that was not asked for: where an option means more by being given (a --tolerance is then kept to,
 // or nothing is written), that is not lost when the settings are used again.
 namespace bandvox::app {
-
-/// The name of the grid metadata that holds settings.
-inline constexpr const char* kSettingsKey = "bandvox_settings";
 
 /// What `convert` makes of what.
 enum class Conversion { SolidToVolume, SolidToMesh, VolumeToVolume, VolumeToMesh };
@@ -32,13 +26,10 @@ std::string settingsText(const CommandLine& line);
 /// give the same result.
 std::string settingsDifference(const std::string& before, const std::string& now);
 
-/// The settings that a file made by `convert` holds, or nothing. Throws what reading it does.
-std::optional<std::string> settingsOf(const openvdb::GridPtrVec& grids);
-
-/// A command line of `convert` with the settings of the file that --like names, where the line does
-/// not say otherwise; those that have no meaning for its conversion are left out. The line itself
-/// without --like. Throws Error(ErrorKind::Input) if that file has no settings, or such as this
-/// version does not know.
+/// A command line of `convert` with the settings of the file that --like names, a .vdb file or a
+/// mesh, where the line does not say otherwise; those that have no meaning for its conversion are
+/// left out. The line itself without --like. Throws Error(ErrorKind::Input) if that file has no
+/// settings, or such as this version does not know.
 CommandLine withLikedSettings(const CommandLine& line);
 
 }  // namespace bandvox::app

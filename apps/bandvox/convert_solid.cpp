@@ -334,7 +334,7 @@ void convertSolid(ConvertJob& job) {
 
     if (request.mesh) {
         const auto colors = grids.color ? grids.color->grid : nullptr;
-        return writeMeshOutput(run, output, *request.mesh, result.grid, colors);
+        return writeMeshOutput(job, output, *request.mesh, result.grid, colors);
     }
     openvdb::GridCPtrVec written{result.grid};
     if (request.levels > 0) {

@@ -53,7 +53,7 @@ void convertGridToMesh(ConvertJob& job) {
                         "active voxels") +
             (colors ? ", with colours" : ""));
     grids.clear();
-    writeMeshOutput(run, output, options, grid, colors);
+    writeMeshOutput(job, output, options, grid, colors);
 }
 
 }  // namespace bandvox::app
