@@ -9,6 +9,9 @@
 #include "frame_pattern.h"
 #include "words.h"
 
+#include <bandvox/source/array_source.h>
+#include <bandvox/source/read_mesh.h>
+
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
@@ -142,6 +145,8 @@ std::optional<FailedFrame> tryFrame(CommandRun& run, const CommandLine& line, in
 }
 
 [[noreturn]] void throwFailed(const FailedFrame& failed) {
+    // Wrong options are no frame's fault.
+    if (failed.kind == ErrorKind::Usage) throw Error(failed.kind, failed.message);
     throw Error(failed.kind, "frame " + std::to_string(failed.frame) + ": " + failed.message);
 }
 
@@ -151,6 +156,7 @@ void sayFailed(CommandRun& run, const FailedFrame& failed) {
 
 [[noreturn]] void throwSummary(const std::vector<FailedFrame>& failed, std::size_t count) {
     std::vector<int> frames;
+    frames.reserve(failed.size());
     for (const FailedFrame& one : failed) frames.push_back(one.frame);
     throw Error(failed.front().kind,
                 std::to_string(failed.size()) + " of " +
@@ -240,8 +246,12 @@ void convertOne(ConvertJob& job) {
 }
 
 bool asksForFrames(const CommandLine& line) {
-    return line.has("frames") || line.has("keep-going") || hasFrame(line.positional(0)) ||
-           hasFrame(line.text("output").value_or(""));
+    if (line.has("frames") || line.has("keep-going")) return true;
+    if (hasFrame(line.text("output").value_or(""))) return true;
+    // Of other kinds of files, many may be one input.
+    const std::string& input = line.positional(0);
+    const bool isWhole = isMeshFile(input) || extensionOf(input) == ".vdb" || isArrayFile(input);
+    return isWhole && hasFrame(input);
 }
 
 void convertFrames(const CommandLine& line) {

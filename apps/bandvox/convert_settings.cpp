@@ -187,7 +187,7 @@ Settings parseSettings(const std::string& text, std::string& head) {
     return settings;
 }
 
-std::string inQuotes(const Settings& settings, const std::string& name) {
+std::string shownValue(const Settings& settings, const std::string& name) {
     const auto found = settings.find(name);
     return found == settings.end() ? "not given" : found->second.value;
 }
@@ -239,9 +239,15 @@ std::string settingsDifference(const std::string& before, const std::string& now
     Settings all = old;
     all.insert(current.begin(), current.end());
     for (const auto& [name, setting] : all) {
-        const std::string was = inQuotes(old, name);
-        const std::string is = inQuotes(current, name);
-        if (was != is) return printable(name + " was " + was) + ", is " + is;
+        const std::string was = shownValue(old, name);
+        const std::string is = shownValue(current, name);
+        if (was == is) continue;
+        std::string words = name;
+        words += " was ";
+        words += was;
+        words += ", is ";
+        words += is;
+        return printable(words);
     }
     return {};
 }

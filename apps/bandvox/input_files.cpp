@@ -128,6 +128,10 @@ std::vector<fs::path> filesOfInput(const std::string& input, bool wantsColors) {
         addFolder(files, input);
         return files;
     }
+    if (hasFrame(input)) {
+        for (const int number : framesOnDisk(input)) addFile(files, withFrame(input, number));
+        return files;
+    }
     addFile(files, input);
     const std::string extension = extensionOf(input);
     if (extension == ".obj" && wantsColors) addMaterials(files, input);

@@ -1,6 +1,7 @@
 #include "progress_plans.h"
 
 #include "convert_settings.h"
+#include "convert_volume.h"
 
 #include <string>
 
@@ -29,7 +30,7 @@ Stages solidStages(const CommandLine& line) {
 }
 
 Stages levelStages(const CommandLine& line) {
-    return {{"filtering", 12, line.wholeNumber("lod", 0, 1 << 10, 0)}};
+    return {{"filtering", 12, readDetailLevels(line)}};
 }
 
 const Stages kMeshStages{{"find surface", 8},
