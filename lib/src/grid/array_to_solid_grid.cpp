@@ -172,17 +172,24 @@ void toDepths(std::span<float> values, const ArraySolidOptions& options, const A
     });
 }
 
+std::string rangeOf(const ArraySolidOptions& options) {
+    if (std::isinf(options.high)) return "above " + inFull(options.low);
+    return "between " + inFull(options.low) + " and " + inFull(options.high);
+}
+
 void requireValid(const ArraySolidOptions& options) {
     if (!(options.low < options.high) || !std::isfinite(options.low)) {
-        throw Error(ErrorKind::Usage, "inside are values from " + inShort(options.low) + " to " +
-                                          inShort(options.high) +
+        throw Error(ErrorKind::Usage, "inside are values from " + inFull(options.low) + " to " +
+                                          inFull(options.high) +
                                           "; expected the first to be the lower one");
     }
     if (!std::isfinite(options.outside) ||
         (options.outside > options.low && options.outside < options.high)) {
-        throw Error(ErrorKind::Usage, "around the array are values of " + inShort(options.outside) +
-                                          ", which are inside of " + inShort(options.low) + " to " +
-                                          inShort(options.high) + "; expected a value that is not");
+        throw Error(ErrorKind::Usage, "outside of the array are values of " +
+                                          inFull(options.outside) + ", which are " +
+                                          rangeOf(options) +
+                                          " and so inside of the solid; "
+                                          "expected a value that is not");
     }
 }
 
@@ -226,8 +233,8 @@ openvdb::FloatGrid::Ptr arrayToSolidGrid(ArraySource& source, const ArraySolidOp
         progress.advance();
     }
     if (grid->empty()) {
-        throw Error(ErrorKind::Result, info.name + ": no value is between " + inShort(options.low) +
-                                           " and " + inShort(options.high));
+        throw Error(ErrorKind::Result, info.name + ": no value is between " + inFull(options.low) +
+                                           " and " + inFull(options.high));
     }
     openvdb::tools::pruneTiles(grid->tree(), 0.0F, /*threaded=*/false);
     grid->setTransform(openvdb::math::Transform::createLinearTransform(info.toWorld));

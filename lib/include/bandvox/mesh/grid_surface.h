@@ -24,8 +24,8 @@ struct GridSurfaceOptions {
 /// The solid of a grid that other programs made: where its values, linear along the edges of the
 /// lattice, are above the iso-value, or below it for a level set. Its surface is that of marching
 /// cubes, which cuts off 1/8 to 1/12 of a voxel for each radian that it turns in a voxel
-/// (docs/solids-of-grids.md). The triangles are never stored: each block of 8³ cells is an element,
-/// and makes its own when it is asked for samples, so memory is that of the grid.
+/// (docs/solids-of-volumes.md). The triangles are never stored: each block of 8³ cells is an
+/// element, and makes its own when it is asked for samples, so memory is that of the grid.
 ///
 /// W. Lorensen, H. Cline: "Marching Cubes" (1987); the choice on faces by G. Nielson, B. Hamann:
 /// "The Asymptotic Decider" (1991).
