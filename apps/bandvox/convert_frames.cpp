@@ -2,6 +2,7 @@
 
 #include "convert_frames.h"
 
+#include "convert_grid_solid.h"
 #include "convert_settings.h"
 #include "convert_solid.h"
 #include "convert_to_mesh.h"
@@ -242,6 +243,9 @@ void convertOne(ConvertJob& job) {
             return convertVolume(job);
         case Conversion::VolumeToMesh:
             return convertGridToMesh(job);
+        case Conversion::GridSolidToVolume:
+        case Conversion::GridSolidToMesh:
+            return convertGridSolid(job);
     }
 }
 

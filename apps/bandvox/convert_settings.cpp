@@ -1,6 +1,7 @@
 #include "convert_settings.h"
 
 #include "command_run.h"
+#include "convert_grid_solid.h"
 #include "convert_stamp.h"
 #include "convert_to_mesh.h"
 #include "mesh_output.h"
@@ -11,6 +12,7 @@
 #include <bandvox/bandlimit/soup_to_density.h>
 #include <bandvox/core/sha256.h>
 #include <bandvox/core/version.h>
+#include <bandvox/mesh/density_to_level_set.h>
 #include <bandvox/mesh/density_to_mesh.h>
 #include <bandvox/mesh/write_mesh.h>
 #include <bandvox/resample/resample_grid.h>
@@ -21,6 +23,7 @@
 #include <array>
 #include <charconv>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <sstream>
 #include <vector>
@@ -48,66 +51,99 @@ std::string shortest(double number) {
 }
 
 const char* nameOf(Conversion conversion) {
-    constexpr std::array kNames{"solid to volume", "solid to mesh", "volume to volume",
-                                "volume to mesh"};
+    constexpr std::array kNames{"solid to volume",           "solid to mesh",
+                                "volume to volume",          "volume to mesh",
+                                "solid of volume to volume", "solid of volume to mesh"};
     return kNames[static_cast<std::size_t>(conversion)];
 }
 
-// The defaults of the route that a solid takes.
-void addRouteDefaults(const CommandLine& line, Settings& defaults) {
+bool makesVolume(Conversion conversion) {
+    return conversion == Conversion::SolidToVolume || conversion == Conversion::VolumeToVolume ||
+           conversion == Conversion::GridSolidToVolume;
+}
+
+// The default of --oversample on the route that a solid takes; empty on one without samples.
+std::string samplesOfRoute(const CommandLine& line) {
     const std::string route = line.textOrDefault("route").value_or("auto");
-    const bool isShapeInput = isShape(line.positional(0));
-    int samples = 0;
-    if (route == "sampled") samples = FieldDensityOptions().oversample;
-    if (!isShapeInput && (route == "auto" || route == "winding")) {
-        samples = SoupDensityOptions().rowsPerVoxel;
+    if (route == "sampled") return std::to_string(FieldDensityOptions().oversample);
+    const bool mayWind = route == "auto" || route == "winding";
+    if (isShape(line.positional(0)) || !mayWind) return {};
+    return std::to_string(SoupDensityOptions().rowsPerVoxel);
+}
+
+using Add = std::function<void(const std::string& name, const std::string& value)>;
+
+void addSolidDefaults(const CommandLine& line, const Add& add) {
+    const DensityOptions density;
+    add("resolution", std::to_string(density.resolution));
+    add("voxel-size", "");
+    add("route", "auto");
+    add("oversample", samplesOfRoute(line));
+    add("overlap", "union");
+    add("iso", shortest(density.iso));
+    add("color", "false");
+}
+
+// Of the lattice that a volume is brought to, and of what is taken of it.
+void addLatticeDefaults(const CommandLine& line, const Add& add) {
+    for (const char* name : {"resolution", "voxel-size", "factor", "onto", "grid", "iso"}) {
+        add(name, "");
     }
-    if (samples > 0) defaults["oversample"] = {std::to_string(samples), true};
+    if (isArrayFile(line.positional(0))) add("background", "0");
+}
+
+// Of a solid, whatever it comes from, that becomes a density.
+void addDensityDefaults(const CommandLine& line, const Add& add) {
+    const DensityOptions density;
+    add("cutoff", shortest(density.filter.cutoff));
+    add("order", shortest(density.filter.order));
+    add("tolerance", shortest(density.tolerance));
+    add("tile", std::to_string(density.tile));
+    add("clamp", "false");
+    add("as", "density");
+    const std::string as = line.textOrDefault("as").value_or("density");
+    add("band", as == "density" ? "" : shortest(LevelSetOptions().halfWidth));
+}
+
+void addResampleDefaults(const CommandLine& line, const Add& add) {
+    const ResampleOptions resample;
+    add("no-filter", "false");
+    if (!line.has("no-filter")) {
+        add("cutoff", shortest(resample.filter->cutoff));
+        add("order", shortest(resample.filter->order));
+    }
+    add("tolerance", shortest(resample.tolerance));
 }
 
 // What holds where nothing is said, of the options that mean anything to a conversion. An empty
 // value: that nothing is said means something of its own.
 Settings defaultsOf(const CommandLine& line, Conversion conversion) {
-    const bool isSolid =
-        conversion == Conversion::SolidToVolume || conversion == Conversion::SolidToMesh;
-    const bool makesVolume =
-        conversion == Conversion::SolidToVolume || conversion == Conversion::VolumeToVolume;
     Settings defaults;
-    const auto add = [&](const std::string& name, const std::string& value) {
+    const Add add = [&](const std::string& name, const std::string& value) {
         defaults[name] = {value, true};
     };
-    if (isSolid) {
-        const DensityOptions density;
-        add("resolution", std::to_string(density.resolution));
-        add("voxel-size", "");
-        add("cutoff", shortest(density.filter.cutoff));
-        add("order", shortest(density.filter.order));
-        add("tolerance", shortest(density.tolerance));
-        add("tile", std::to_string(density.tile));
-        add("route", "auto");
-        add("oversample", "");
-        addRouteDefaults(line, defaults);
-        add("overlap", "union");
-        add("clamp", "false");
-        add("iso", shortest(density.iso));
-        add("color", "false");
-    } else if (conversion == Conversion::VolumeToVolume) {
-        const ResampleOptions resample;
-        for (const char* name : {"resolution", "voxel-size", "factor", "onto", "grid", "iso"}) {
-            add(name, "");
-        }
-        if (isArrayFile(line.positional(0))) add("background", "0");
-        add("no-filter", "false");
-        if (!line.has("no-filter")) {
-            add("cutoff", shortest(resample.filter->cutoff));
-            add("order", shortest(resample.filter->order));
-        }
-        add("tolerance", shortest(resample.tolerance));
-    } else {
-        for (const char* name : {"grid", "iso"}) add(name, "");
-        add("color", "false");
+    switch (conversion) {
+        case Conversion::SolidToVolume:
+        case Conversion::SolidToMesh:
+            addSolidDefaults(line, add);
+            addDensityDefaults(line, add);
+            break;
+        case Conversion::GridSolidToVolume:
+        case Conversion::GridSolidToMesh:
+            addLatticeDefaults(line, add);
+            add("threshold", "");
+            addDensityDefaults(line, add);
+            break;
+        case Conversion::VolumeToVolume:
+            addLatticeDefaults(line, add);
+            addResampleDefaults(line, add);
+            break;
+        case Conversion::VolumeToMesh:
+            for (const char* name : {"grid", "iso"}) add(name, "");
+            add("color", "false");
+            break;
     }
-    if (makesVolume) {
+    if (makesVolume(conversion)) {
         add("half", "false");
         add("compression", "blosc");
         add("lod", "0");
@@ -204,13 +240,16 @@ std::string likedLattice(const openvdb::GridPtrVec& grids, const std::string& fi
 }  // namespace
 
 Conversion conversionOf(const CommandLine& line) {
-    if (convertsGridToMesh(line)) return Conversion::VolumeToMesh;
     const std::string& input = line.positional(0);
+    const bool toMesh = isWritableMesh(line.text("output").value_or(""));
+    if (takesSolidOfGrid(line)) {
+        return toMesh ? Conversion::GridSolidToMesh : Conversion::GridSolidToVolume;
+    }
+    if (convertsGridToMesh(line)) return Conversion::VolumeToMesh;
     if (!isShape(input) && (extensionOf(input) == ".vdb" || isArrayFile(input))) {
         return Conversion::VolumeToVolume;
     }
-    return isWritableMesh(line.text("output").value_or("")) ? Conversion::SolidToMesh
-                                                            : Conversion::SolidToVolume;
+    return toMesh ? Conversion::SolidToMesh : Conversion::SolidToVolume;
 }
 
 std::string settingsText(const CommandLine& line) {
@@ -268,9 +307,19 @@ CommandLine withLikedSettings(const CommandLine& line) {
     }
     std::string head;
     const Settings settings = parseSettings(text, head);
-    const Conversion conversion = conversionOf(line);
-    const bool isSame = head.starts_with(std::string("# ") + nameOf(conversion) + " by ");
-    const Settings known = defaultsOf(line, conversion);
+    // --as and --threshold, which are among them, can decide what the conversion is.
+    CommandLine all = line;
+    for (const auto& [name, setting] : settings) {
+        if (!setting.isDefault && !line.decides(name) && setting.value != "false") {
+            all.setUndecided(name, setting.value, *file);
+        }
+    }
+    const auto isMadeAs = [&](Conversion conversion) {
+        return head.starts_with(std::string("# ") + nameOf(conversion) + " by ");
+    };
+    const bool isSame = isMadeAs(conversionOf(all));
+    const Conversion conversion = conversionOf(isSame ? all : line);
+    const Settings known = defaultsOf(isSame ? all : line, conversion);
     CommandLine liked = line;
     for (const auto& [name, setting] : settings) {
         const OptionEntry* option = findOption(line.table(), name);

@@ -13,9 +13,16 @@
 namespace bandvox::app {
 
 /// What `convert` makes of what.
-enum class Conversion { SolidToVolume, SolidToMesh, VolumeToVolume, VolumeToMesh };
+enum class Conversion {
+    SolidToVolume,
+    SolidToMesh,
+    VolumeToVolume,
+    VolumeToMesh,
+    GridSolidToVolume,  ///< of the solid that a volume stands for
+    GridSolidToMesh,
+};
 
-/// Which one the input's and the output's names ask for.
+/// Which one the names of input and output, --as and --threshold ask for.
 Conversion conversionOf(const CommandLine& line);
 
 /// The settings of a command line of `convert`, with defaults resolved. The lattice of --onto is

@@ -42,24 +42,30 @@ const Stages kMeshStages{{"find surface", 8},
 Stages convertStages(const CommandLine& line) {
     Stages stages{{"identify input", 1}};
     if (line.has("skip-existing")) append(stages, {{"check output", 4}});
-    switch (conversionOf(line)) {
+    const Conversion conversion = conversionOf(line);
+    switch (conversion) {
         case Conversion::SolidToVolume:
-            append(stages, solidStages(line));
-            append(stages, levelStages(line));
-            break;
         case Conversion::SolidToMesh:
             append(stages, solidStages(line));
-            append(stages, kMeshStages);
+            break;
+        case Conversion::GridSolidToVolume:
+        case Conversion::GridSolidToMesh:
+            append(stages, {{"reading", 10}, {"finding the surface", 15}});
+            append(stages, {{"filtering", 10}, {"band-limiting", 60}, {"assembling", 4}});
             break;
         case Conversion::VolumeToVolume:
             append(stages, {{"reading", 20}, {"filtering", 40}});
-            append(stages, levelStages(line));
             break;
         case Conversion::VolumeToMesh:
             append(stages, {{"read", 6}});
-            append(stages, kMeshStages);
             break;
     }
+    const bool toMesh = conversion == Conversion::SolidToMesh ||
+                        conversion == Conversion::GridSolidToMesh ||
+                        conversion == Conversion::VolumeToMesh;
+    if (toMesh) append(stages, kMeshStages);
+    if (line.has("as")) append(stages, {{"distances", 15}});
+    if (!toMesh) append(stages, levelStages(line));
     append(stages, {{"write", 6}});
     return stages;
 }

@@ -61,7 +61,7 @@ TEST_F(Stamp, SettingsAreCompleteAndHoldNothingOfTheMachine) {
     const std::string version = run({"--version"}).out;
     EXPECT_EQ(settings("a.vdb"),
               "# solid to volume by " + version +
-                  "clamp=false\ncolor=false\ncompression=blosc # default\n"
+                  "as=density # default\nclamp=false\ncolor=false\ncompression=blosc # default\n"
                   "cutoff=0.16 # default\nhalf=false\niso=0.5 # default\nlod=1\n"
                   "order=2 # default\noverlap=union # default\noversample=4 # default\n"
                   "resolution=16\nroute=auto # default\ntile=0 # default\n"
@@ -101,6 +101,12 @@ TEST_F(Stamp, LikeRepeatsWhatWasDone) {
         {"volume.vdb", {"--lod", "1"}},
         {"volume.vdb", {"--order", "3", "--iso", "0.3"}},
         {"volume.vdb", {}},
+        {"cube.obj", {"-r", "16", "--as", "level-set", "--band", "4"}},
+        {"cube.obj", {"-r", "16", "--as", "fog", "--iso", "volume"}},
+        {"volume.vdb", {"--as", "level-set"}},
+        {"volume.vdb", {"--as", "density", "--factor", "2", "--order", "3"}},
+        {"volume.vdb", {"--threshold", "0.3", "--tile", "32"}},
+        {"volume.vdb", {"--as", "values", "--half"}},
     };
     expectRuns({"convert", "cube.obj", "-o", "volume.vdb", "-r", "16"});
     expectRuns({"convert", "shape:sphere", "-o", "other.vdb", "-r", "9"});
