@@ -9,6 +9,8 @@ pkg_check_modules(FFTW3F REQUIRED IMPORTED_TARGET GLOBAL fftw3f)
 pkg_check_modules(FFTW3 REQUIRED IMPORTED_TARGET GLOBAL fftw3)
 # CGAL is headers alone; its own description would set options for all that includes it.
 find_path(BANDVOX_CGAL_INCLUDE_DIR CGAL/version.h REQUIRED)
+# So is Eigen, which CGAL solves sparse systems with.
+find_path(BANDVOX_EIGEN_INCLUDE_DIR Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
 pkg_check_modules(GMP REQUIRED IMPORTED_TARGET GLOBAL gmp)
 pkg_check_modules(MPFR REQUIRED IMPORTED_TARGET GLOBAL mpfr)
 pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET GLOBAL epoxy)
