@@ -5,6 +5,7 @@
 #include "convert_frames.h"
 #include "convert_grid_solid.h"
 #include "convert_job.h"
+#include "convert_points.h"
 #include "convert_settings.h"
 #include "convert_volume.h"
 #include "mesh_output.h"
@@ -31,6 +32,7 @@ const CommandTable& convertTable() {
         };
         add(latticeEntries());
         add(gridSolidEntries());
+        add(pointEntries());
         add(filterEntries(density.filter));
         add({
             {"tolerance", 0, "E", formatNumber(density.tolerance),
@@ -87,8 +89,8 @@ const CommandTable& convertTable() {
             "mesh is the surface of the density, or of a .vdb file's level set, closed.",
             {{"INPUT",
               "A mesh (.obj, .ply, .stl, .gltf, ...), a .vdb file (stdin.vdb is the standard "
-              "input), an array (.npy, .nrrd, .nhdr, .mha, .mhd), or a built-in shape such as "
-              "shape:torus."}},
+              "input), an array (.npy, .nrrd, .nhdr, .mha, .mhd), points (.xyz, .csv, .txt, a .ply "
+              "without faces), or a built-in shape such as shape:torus."}},
             options,
             {
                 {"bandvox convert bunny.obj -o bunny.vdb --resolution 512",
@@ -103,6 +105,8 @@ const CommandTable& convertTable() {
                  "What of a scan is above 300, on voxels twice as large."},
                 {"bandvox convert bunny.obj -o distances.vdb --as level-set",
                  "Distances from the surface of that."},
+                {"bandvox convert particles.csv -o water.vdb --radius 0.05",
+                 "The union of balls around points."},
                 {"bandvox convert spot.obj -o spot.vdb --color",
                  "The density, and the colours of the surface around it."},
                 {"bandvox convert spot.vdb -o spot.ply", "The surface of that, with its colours."},

@@ -3,6 +3,7 @@
 #include "convert_frames.h"
 
 #include "convert_grid_solid.h"
+#include "convert_points.h"
 #include "convert_settings.h"
 #include "convert_solid.h"
 #include "convert_to_mesh.h"
@@ -11,6 +12,7 @@
 #include "words.h"
 
 #include <bandvox/source/array_source.h>
+#include <bandvox/source/point_cloud.h>
 #include <bandvox/source/read_mesh.h>
 
 #include <nlohmann/json.hpp>
@@ -246,6 +248,9 @@ void convertOne(ConvertJob& job) {
         case Conversion::GridSolidToVolume:
         case Conversion::GridSolidToMesh:
             return convertGridSolid(job);
+        case Conversion::PointsToVolume:
+        case Conversion::PointsToMesh:
+            return convertPoints(job);
     }
 }
 
@@ -254,7 +259,8 @@ bool asksForFrames(const CommandLine& line) {
     if (hasFrame(line.text("output").value_or(""))) return true;
     // Of other kinds of files, many may be one input.
     const std::string& input = line.positional(0);
-    const bool isWhole = isMeshFile(input) || extensionOf(input) == ".vdb" || isArrayFile(input);
+    const bool isWhole = isMeshFile(input) || extensionOf(input) == ".vdb" || isArrayFile(input) ||
+                         isPointCloudFile(input);
     return isWhole && hasFrame(input);
 }
 

@@ -96,7 +96,8 @@ GridSolidRequest parseGridSolid(const CommandLine& line) {
     const std::string output = line.requiredText("output");
     request.mesh = readVdbOrMeshOutput(line);
     request.output = outputPath(output);
-    refuseOptions(line, {"route", "oversample", "overlap", "color", "no-filter"},
+    refuseOptions(line,
+                  {"route", "oversample", "overlap", "color", "no-filter", "points", "radius"},
                   "for the solid of a volume");
     request.threshold = readThreshold(line, request.isArray());
     if (request.isArray()) {

@@ -2,6 +2,7 @@
 
 #include "command_run.h"
 #include "convert_grid_solid.h"
+#include "convert_points.h"
 #include "convert_stamp.h"
 #include "convert_to_mesh.h"
 #include "mesh_output.h"
@@ -53,13 +54,14 @@ std::string shortest(double number) {
 const char* nameOf(Conversion conversion) {
     constexpr std::array kNames{"solid to volume",           "solid to mesh",
                                 "volume to volume",          "volume to mesh",
-                                "solid of volume to volume", "solid of volume to mesh"};
+                                "solid of volume to volume", "solid of volume to mesh",
+                                "points to volume",          "points to mesh"};
     return kNames[static_cast<std::size_t>(conversion)];
 }
 
 bool makesVolume(Conversion conversion) {
     return conversion == Conversion::SolidToVolume || conversion == Conversion::VolumeToVolume ||
-           conversion == Conversion::GridSolidToVolume;
+           conversion == Conversion::GridSolidToVolume || conversion == Conversion::PointsToVolume;
 }
 
 // The default of --oversample on the route that a solid takes; empty on one without samples.
@@ -105,6 +107,16 @@ void addDensityDefaults(const CommandLine& line, const Add& add) {
     add("band", as == "density" ? "" : shortest(LevelSetOptions().halfWidth));
 }
 
+void addPointDefaults(const CommandLine& line, const Add& add) {
+    const DensityOptions density;
+    add("resolution", std::to_string(density.resolution));
+    add("voxel-size", "");
+    add("iso", shortest(density.iso));
+    add("points", "auto");
+    add("radius", "");
+    addDensityDefaults(line, add);
+}
+
 void addResampleDefaults(const CommandLine& line, const Add& add) {
     const ResampleOptions resample;
     add("no-filter", "false");
@@ -133,6 +145,10 @@ Settings defaultsOf(const CommandLine& line, Conversion conversion) {
             addLatticeDefaults(line, add);
             add("threshold", "");
             addDensityDefaults(line, add);
+            break;
+        case Conversion::PointsToVolume:
+        case Conversion::PointsToMesh:
+            addPointDefaults(line, add);
             break;
         case Conversion::VolumeToVolume:
             addLatticeDefaults(line, add);
@@ -248,6 +264,9 @@ Conversion conversionOf(const CommandLine& line) {
     if (convertsGridToMesh(line)) return Conversion::VolumeToMesh;
     if (!isShape(input) && (extensionOf(input) == ".vdb" || isArrayFile(input))) {
         return Conversion::VolumeToVolume;
+    }
+    if (takesPoints(line)) {
+        return toMesh ? Conversion::PointsToMesh : Conversion::PointsToVolume;
     }
     return toMesh ? Conversion::SolidToMesh : Conversion::SolidToVolume;
 }

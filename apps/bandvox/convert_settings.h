@@ -20,6 +20,8 @@ enum class Conversion {
     VolumeToMesh,
     GridSolidToVolume,  ///< of the solid that a volume stands for
     GridSolidToMesh,
+    PointsToVolume,
+    PointsToMesh,
 };
 
 /// Which one the names of input and output, --as and --threshold ask for.

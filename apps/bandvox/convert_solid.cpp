@@ -112,6 +112,7 @@ ConvertRequest parseConvert(const CommandLine& line) {
         throw Error(ErrorKind::Usage, std::string("option --") + name + " is for volumes, and '" +
                                           request.input + "' is none");
     }
+    refuseOptions(line, {"points", "radius"}, "with a mesh or a shape");
     readRoute(line, request);
     DensityOptions& density = request.density;
     readSize(line, density.resolution, density.voxelSize);

@@ -26,11 +26,11 @@ bool convertsGridToMesh(const CommandLine& line) {
 
 void convertGridToMesh(ConvertJob& job) {
     const CommandLine& line = job.line();
-    refuseOptions(line,
-                  {"resolution", "voxel-size", "cutoff", "order", "tolerance", "tile", "route",
-                   "oversample", "overlap", "clamp", "half", "compression", "background", "factor",
-                   "onto", "no-filter", "lod", "band"},
-                  "where a mesh is made of a .vdb file, which is not filtered again");
+    refuseOptions(
+        line, {"resolution", "voxel-size", "cutoff", "order", "tolerance",   "tile",       "route",
+               "oversample", "overlap",    "clamp",  "half",  "compression", "background", "factor",
+               "onto",       "no-filter",  "lod",    "band",  "points",      "radius"},
+        "where a mesh is made of a .vdb file, which is not filtered again");
     const std::string& input = line.positional(0);
     MeshOutput options = readMeshOutput(line);
     const IsoOption iso = readIso(line, {});

@@ -64,7 +64,7 @@ VolumeRequest parseVolume(const CommandLine& line) {
                                           " is for meshes and shapes, and '" + request.input +
                                           "' is a volume already");
     }
-    refuseOptions(line, {"band"}, "with the values of a volume");
+    refuseOptions(line, {"band", "points", "radius"}, "with the values of a volume");
     request.grid = line.text("grid");
     if (line.has("background") && !isArrayFile(request.input)) {
         throw Error(ErrorKind::Usage, "--background is for arrays, and '" + request.input +

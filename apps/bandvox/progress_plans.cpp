@@ -53,6 +53,13 @@ Stages convertStages(const CommandLine& line) {
             append(stages, {{"reading", 10}, {"finding the surface", 15}});
             append(stages, {{"filtering", 10}, {"band-limiting", 60}, {"assembling", 4}});
             break;
+        case Conversion::PointsToVolume:
+        case Conversion::PointsToMesh:
+            append(stages,
+                   {{"read points", 5}, {"drawing balls", 10}, {"fitting the surface", 60}});
+            append(stages, {{"following the surface", 10}, {"finding the surface", 5}});
+            append(stages, {{"band-limiting", 60}, {"assembling", 4}});
+            break;
         case Conversion::VolumeToVolume:
             append(stages, {{"reading", 20}, {"filtering", 40}});
             break;
@@ -60,9 +67,9 @@ Stages convertStages(const CommandLine& line) {
             append(stages, {{"read", 6}});
             break;
     }
-    const bool toMesh = conversion == Conversion::SolidToMesh ||
-                        conversion == Conversion::GridSolidToMesh ||
-                        conversion == Conversion::VolumeToMesh;
+    const bool toMesh =
+        conversion == Conversion::SolidToMesh || conversion == Conversion::GridSolidToMesh ||
+        conversion == Conversion::PointsToMesh || conversion == Conversion::VolumeToMesh;
     if (toMesh) append(stages, kMeshStages);
     if (line.has("as")) append(stages, {{"distances", 15}});
     if (!toMesh) append(stages, levelStages(line));

@@ -130,8 +130,8 @@ double chooseBallLattice(const Balls& balls, double voxelSize) {
     double voxel = voxelSize / kBallFactors.front();
     for (const double factor : kBallFactors) {
         const double finer = voxelSize / factor;
-        const bool mayBeTaken = kBytesPerLeaf * leavesTouched(balls, finer) <
-                                0.5 * double(availableMemory());
+        const bool mayBeTaken =
+            kBytesPerLeaf * leavesTouched(balls, finer) < 0.5 * double(availableMemory());
         if (!mayBeTaken && factor != kBallFactors.front()) break;
         voxel = finer;
         if (smallest >= kSmallestBall * voxel) break;
@@ -147,10 +147,9 @@ void requireNear(const Balls& balls, double voxel) {
     double reach = 0;
     for (int axis = 0; axis < 3; ++axis) reach = std::max({reach, low[axis], high[axis]});
     if (reach / voxel < kFarthestIndex) return;
-    throw Error(ErrorKind::Input,
-                "the balls reach to " + inShort(reach) + " from the origin, " +
-                    inShort(reach / voxel) + " voxels of side " + inShort(voxel) +
-                    "; expected fewer than " + inShort(kFarthestIndex));
+    throw Error(ErrorKind::Input, "the balls reach to " + inShort(reach) + " from the origin, " +
+                                      inShort(reach / voxel) + " voxels of side " + inShort(voxel) +
+                                      "; expected fewer than " + inShort(kFarthestIndex));
 }
 
 }  // namespace
@@ -166,14 +165,13 @@ openvdb::BBoxd Balls::bounds() const {
 
 BallGrid ballsToSolidGrid(const Balls& balls, double voxelSize, Progress& progress) {
     if (!(voxelSize > 0)) {
-        throw Error(ErrorKind::Usage, "the voxel size for balls is " + inShort(voxelSize) +
-                                          "; expected more than 0");
+        throw Error(ErrorKind::Usage,
+                    "the voxel size for balls is " + inShort(voxelSize) + "; expected more than 0");
     }
     if (balls.centers.size() != balls.radii.size()) {
-        throw Error(ErrorKind::Usage, "there are " + std::to_string(balls.centers.size()) +
-                                          " centers of balls and " +
-                                          std::to_string(balls.radii.size()) +
-                                          " radii; expected as many");
+        throw Error(ErrorKind::Usage,
+                    "there are " + std::to_string(balls.centers.size()) + " centers of balls and " +
+                        std::to_string(balls.radii.size()) + " radii; expected as many");
     }
     const ProgressStage stage(progress, "drawing balls",
                               static_cast<std::int64_t>(balls.radii.size()));
@@ -196,8 +194,8 @@ BallGrid ballsToSolidGrid(const Balls& balls, double voxelSize, Progress& progre
         throw Error(ErrorKind::Result,
                     "all " + counted(balls.radii.size(), "ball is", "balls are") +
                         " smaller than " + inShort(kSmallestBall * voxel) +
-                        " in radius, which is the least for voxels of side " +
-                        inShort(voxelSize) + "; expected larger ones, or smaller voxels");
+                        " in radius, which is the least for voxels of side " + inShort(voxelSize) +
+                        "; expected larger ones, or smaller voxels");
     }
 
     // Draw what is small all at once, and each large ball as the shell that it is. That is done in
@@ -206,8 +204,7 @@ BallGrid ballsToSolidGrid(const Balls& balls, double voxelSize, Progress& progre
     result.grid = openvdb::createLevelSet<openvdb::FloatGrid>(voxel, kBallBand);
     BallInterrupter interrupter(progress);
     const DrawnBalls drawn(balls, std::move(solid), origin, voxel, progress);
-    using Drawing =
-        openvdb::tools::ParticlesToLevelSet<openvdb::FloatGrid, void, BallInterrupter>;
+    using Drawing = openvdb::tools::ParticlesToLevelSet<openvdb::FloatGrid, void, BallInterrupter>;
     Drawing drawing(*result.grid, &interrupter);
     drawing.setRmax(2 * kLargestSolidBall);
     if (drawn.size() > 0) drawing.rasterizeSpheres(drawn);

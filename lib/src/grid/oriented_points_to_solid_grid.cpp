@@ -114,9 +114,8 @@ class SurfaceWalk {
         const auto accessor = mGrid->getConstAccessor();
         std::erase_if(leaves, [&](const Coord& leaf) {
             const float* values = accessor.probeConstLeaf(leaf)->buffer().data();
-            return std::all_of(values, values + FieldLeaf::SIZE, [&](float value) {
-                return (value < 0) == (values[0] < 0);
-            });
+            return std::all_of(values, values + FieldLeaf::SIZE,
+                               [&](float value) { return (value < 0) == (values[0] < 0); });
         });
         for (const Coord& leaf : leaves) mSeen.setValueOn(leaf >> kLeafBits);
         return leaves;
@@ -192,8 +191,8 @@ class SurfaceWalk {
                 }
             }
         }
-        const bool isMixed = std::any_of(inside.begin(), inside.end(),
-                                         [&](bool node) { return node != inside[0]; });
+        const bool isMixed =
+            std::any_of(inside.begin(), inside.end(), [&](bool node) { return node != inside[0]; });
         unsigned faces = isMixed ? 1U << 6 : 0;
         for (int axis = 0; axis < 3; ++axis) {
             for (int side = 0; side < 2; ++side) {
@@ -268,8 +267,7 @@ std::string percent(double share) {
 void addPointWarnings(OrientedPointsGrid& result, std::size_t count) {
     if (result.withoutNormal > 0) {
         result.warnings.push_back(counted(result.withoutNormal, "point", "points") + " of " +
-                                  std::to_string(count) +
-                                  " were left out, as their normal is 0");
+                                  std::to_string(count) + " were left out, as their normal is 0");
     }
     if (result.turned) {
         result.warnings.push_back("the normals point inward; they were turned");

@@ -13,7 +13,6 @@
 #include <CGAL/property_map.h>
 
 #include <Eigen/IterativeLinearSolvers>
-
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -46,8 +45,8 @@ class StoppablePreconditioner : public Eigen::DiagonalPreconditioner<double> {
 };
 
 using SymmetricMatrix = CGAL::Eigen_sparse_symmetric_matrix<double>;
-using GradientSolver = Eigen::ConjugateGradient<SymmetricMatrix::EigenType, Eigen::Lower,
-                                                StoppablePreconditioner>;
+using GradientSolver =
+    Eigen::ConjugateGradient<SymmetricMatrix::EigenType, Eigen::Lower, StoppablePreconditioner>;
 
 }  // namespace
 }  // namespace bandvox
@@ -144,10 +143,9 @@ struct PoissonFunction::Implementation {
 PoissonFunction::PoissonFunction(const OrientedPoints& points, Progress& progress) {
     const std::size_t count = points.points.size();
     if (count > kMostPoints) {
-        throw Error(ErrorKind::Input, "there are " + std::to_string(count) +
-                                          " points with normals; expected " +
-                                          std::to_string(kMostPoints) +
-                                          " at most, or fewer of them, evenly chosen");
+        throw Error(ErrorKind::Input,
+                    "there are " + std::to_string(count) + " points with normals; expected " +
+                        std::to_string(kMostPoints) + " at most, or fewer of them, evenly chosen");
     }
     requireMemory(kBytesPerPoint * double(count), "the triangulation of the points");
     const ProgressStage stage(progress, "fitting the surface", static_cast<std::int64_t>(count));

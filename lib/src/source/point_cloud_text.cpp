@@ -30,8 +30,8 @@ std::optional<double> numberOf(std::string_view word) {
     const auto [at, status] = std::from_chars(word.data(), end, value);
     if (at != end || status == std::errc::invalid_argument) return std::nullopt;
     if (status == std::errc::result_out_of_range) {
-        const bool isSmall = word.find("e-") != std::string_view::npos ||
-                             word.find("E-") != std::string_view::npos;
+        const bool isSmall =
+            word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos;
         return isSmall ? 0 : std::numeric_limits<double>::infinity();
     }
     return value;
@@ -138,8 +138,7 @@ PointColumns columnsByCount(const PointTable& table) {
     columns.isNamed = false;
     const std::size_t count = table.cells().size();
     if (count != 3 && count != 4 && count != 6) {
-        table.fail("has " + std::to_string(count) +
-                   (count == 1 ? " number" : " numbers") +
+        table.fail("has " + std::to_string(count) + (count == 1 ? " number" : " numbers") +
                    "; expected 3 (x y z), 4 (and the radius) or 6 (and the normal), or names of "
                    "the columns");
     }

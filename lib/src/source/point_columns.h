@@ -31,8 +31,8 @@ struct PointColumns {
     bool hasRadii() const { return column[kRadiusValue].has_value(); }
 };
 
-/// Finds columns by their names. Calls `fail(what)`, which throws, if one of x, y and z or some of a
-/// normal are missing, or two columns are the same.
+/// Finds columns by their names. Calls `fail(what)`, which throws, if one of x, y and z or some of
+/// a normal are missing, or two columns are the same.
 template <typename Fail>
 PointColumns columnsByName(const std::vector<std::string>& names, const Fail& fail);
 
@@ -109,8 +109,8 @@ PointColumns columnsByName(const std::vector<std::string>& names, const Fail& fa
         if (named->value == kRadiusValue) columns.radiusFactor = named->factor;
     }
     for (std::size_t i = 0; i < kRadiusValue; ++i) {
-        const bool isNeeded = i < kNormalValue || columns.column[3] || columns.column[4] ||
-                              columns.column[5];
+        const bool isNeeded =
+            i < kNormalValue || columns.column[3] || columns.column[4] || columns.column[5];
         if (!isNeeded || columns.column[i]) continue;
         std::string message = "names no '";
         message += kPointValueNames[i];
