@@ -73,6 +73,7 @@ const CommandTable& convertTable() {
              "Store 16-bit values, which changes densities by up to 2.5e-4, above 1 by 5e-4.",
              "Output"},
             compressionEntry(),
+            shardEntry(),
             adaptivityEntry(),
         });
         add(outputKindEntries());

@@ -123,6 +123,12 @@ GridSolidRequest parseGridSolid(const CommandLine& line) {
     density.iso = request.iso.value.value_or(density.iso);
     request.kind = readOutputKind(line).value_or(OutputKind());
     request.levels = readDetailLevels(line);
+    density.shard = readShard(line);
+    if (!density.shard.isWhole() && request.kind.kind != OutputKind::Kind::Density) {
+        throw Error(ErrorKind::Usage,
+                    "--as level-set or fog needs the whole, and --shard asks for "
+                    "a part; convert what is merged");
+    }
     request.write.half = line.has("half");
     request.write.compression = readCompression(line);
     return request;
@@ -199,10 +205,15 @@ DensityResult densityOn(CommandRun& run, const GridSolid& solid,
 openvdb::FloatGrid::Ptr densityOfDensity(CommandRun& run, const GridSolidRequest& request,
                                          const openvdb::FloatGrid::Ptr& grid,
                                          const openvdb::math::Transform& target) {
-    if (request.lattice.isSame() && !request.isFiltered) return grid;
+    if (request.lattice.isSame() && !request.isFiltered) {
+        if (request.density.shard.isWhole()) return grid;
+        throw Error(ErrorKind::Usage,
+                    "--shard has no meaning where a density is copied; expected a new lattice");
+    }
     ResampleOptions options;
     options.filter = request.density.filter;
     options.tolerance = request.density.tolerance;
+    options.shard = request.density.shard;
     return resampleGrid(grid, target, options, run.progress()).grid;
 }
 

@@ -134,6 +134,12 @@ ConvertRequest parseConvert(const CommandLine& line) {
                                           "' is a built-in shape, which has none");
     }
     request.levels = readDetailLevels(line);
+    density.shard = readShard(line);
+    if (!density.shard.isWhole() && request.kind.kind != OutputKind::Kind::Density) {
+        throw Error(ErrorKind::Usage,
+                    "--as level-set or fog needs the whole, and --shard asks for "
+                    "a part; convert what is merged");
+    }
     request.write.half = line.has("half");
     request.write.compression = readCompression(line);
     return request;

@@ -90,6 +90,11 @@ VolumeRequest parseVolume(const CommandLine& line) {
     request.resamples = filters || !request.lattice.isSame();
     request.iso = readIso(line, {});
     request.levels = readDetailLevels(line);
+    request.resample.shard = readShard(line);
+    if (!request.resample.shard.isWhole() && !request.resamples) {
+        throw Error(ErrorKind::Usage,
+                    "--shard has no meaning where grids are copied; expected a new lattice");
+    }
     request.write.half = line.has("half");
     request.write.compression = readCompression(line);
     return request;
@@ -108,18 +113,28 @@ openvdb::GridPtrVec convertGrid(CommandRun& run, const VolumeRequest& request,
                                 const openvdb::GridBase::Ptr& grid,
                                 const openvdb::math::Transform::ConstPtr& onto) {
     openvdb::GridPtrVec result;
+    const Shard& shard = request.resample.shard;
     if (grid->activeVoxelCount() == 0 || (!request.resamples && request.levels == 0)) {
+        if (shard.index > 1) return {};
         return {grid};
     }
     const auto target = targetFor(*grid, request.lattice, onto);
     if (const auto vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grid)) {
         if (!request.resamples) return {grid};
-        return {resampleVectors(vectors, *target, request.resample, run.progress())};
+        // They are made whole, by the first machine.
+        if (shard.index > 1) return {};
+        ResampleOptions whole = request.resample;
+        whole.shard = {};
+        return {resampleVectors(vectors, *target, whole, run.progress())};
     }
     openvdb::FloatGrid::Ptr floats = asFloatGrid(grid);
     // Filtered distances are none; those of the filtered solid are.
     if (floats && floats->getGridClass() == openvdb::GRID_LEVEL_SET && request.resamples &&
         request.resample.filter && request.levels == 0) {
+        if (!shard.isWhole()) {
+            throw Error(ErrorKind::Usage, "--shard has no meaning for the level set '" +
+                                              grid->getName() + "', which is rebuilt as a whole");
+        }
         return {rebuildLevelSet(run, floats, {request.lattice, onto, request.resample})};
     }
     if (!floats) {
@@ -241,7 +256,7 @@ void convertVolume(const CommandLine& line) {
     }
     run.count("grids", written.size());
     run.count("active_voxels", activeVoxels);
-    if (activeVoxels == 0) {
+    if (activeVoxels == 0 && request.resample.shard.isWhole()) {
         throw Error(ErrorKind::Result, "nothing would be written: no grid of '" + request.input +
                                            "' has active voxels that are left");
     }
