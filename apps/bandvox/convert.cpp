@@ -2,13 +2,13 @@
 
 #include "command_run.h"
 #include "commands.h"
+#include "convert_frames.h"
 #include "convert_grid_solid.h"
-#include "convert_solid.h"
-#include "convert_to_mesh.h"
+#include "convert_job.h"
+#include "convert_settings.h"
 #include "convert_volume.h"
 #include "mesh_output.h"
 #include "output_kind.h"
-#include "solid_input.h"
 #include "volume_options.h"
 #include "words.h"
 
@@ -60,8 +60,7 @@ const CommandTable& convertTable() {
             {"iso", 0, "D", formatNumber(density.iso),
              "Value that is the surface, of a mesh or for the commands that come after. Of a .vdb "
              "input it is the one stored there, else 0.5, and 0 of a level set. volume: the value "
-             "that "
-             "encloses the volume of the source.",
+             "that encloses the volume of the source.",
              filter},
             {"color", 0, "", "",
              "Write the colours of the mesh beside its density, as a grid Cd, or with the points "
@@ -77,6 +76,7 @@ const CommandTable& convertTable() {
             adaptivityEntry(),
         });
         add(outputKindEntries());
+        add(frameEntries());
         return CommandTable{
             "convert",
             "Turn a mesh, a built-in shape or a volume into a band-limited volume or its surface.",
@@ -109,20 +109,22 @@ const CommandTable& convertTable() {
                 {"bandvox convert spot.vdb -o spot.ply", "The surface of that, with its colours."},
                 {"bandvox convert part.stl -o part.vdb --voxel-size 0.1 --strict",
                  "Voxels of a given size, and no result if anything about the mesh is doubtful."},
-            }};
+                {"bandvox convert sim.####.obj -o sim.####.vdb --frames 1-100 --skip-existing",
+                 "A hundred frames, but for those that are done already."},
+            },
+            {{"resolution", "voxel-size", "factor", "onto"},
+             {"no-filter", "cutoff"},
+             {"no-filter", "order"}}};
     }();
     return table;
 }
 
-void runConvert(const CommandLine& line) {
-    if (takesSolidOfGrid(line)) return convertGridSolid(line);
-    if (convertsGridToMesh(line)) return convertGridToMesh(line);
-    const std::string& input = line.positional(0);
-    if (!isShape(input) && (extensionOf(input) == ".vdb" || isArrayFile(input))) {
-        convertVolume(line);
-    } else {
-        convertSolid(line);
-    }
+void runConvert(const CommandLine& given) {
+    const CommandLine line = withLikedSettings(given);
+    if (asksForFrames(line)) return convertFrames(line);
+    CommandRun run(line);
+    ConvertJob job(run, line);
+    convertOne(job);
 }
 
 }  // namespace bandvox::app

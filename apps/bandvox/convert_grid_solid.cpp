@@ -274,22 +274,22 @@ bool takesSolidOfGrid(const CommandLine& line) {
     return false;
 }
 
-void convertGridSolid(const CommandLine& line) {
-    const GridSolidRequest request = parseGridSolid(line);
-    CommandRun run(line);
+void convertGridSolid(ConvertJob& job) {
+    const GridSolidRequest request = parseGridSolid(job.line());
+    if (!job.begin()) return;
+    CommandRun& run = job.run();
     AtomicFile output(request.output);
     const auto onto = readOnto(request.lattice);
     GridSolid solid = readGridSolid(run, request);
     if (isDirect(request, solid)) {
         const auto grid = makeOutput(run, request.kind, solid.grid, solid.iso);
-        return run.writeOutput(output,
-                               [&](AtomicFile& file) { writeVdb(file, {grid}, request.write); });
+        return job.writeVolume(output, {grid}, request.write);
     }
 
     SolidDensity density = makeDensity(run, request, solid, onto);
     solid.grid.reset();
     finishDensity(run, request, density);
-    if (request.mesh) return writeMeshOutput(run, output, *request.mesh, density.grid, nullptr);
+    if (request.mesh) return writeMeshOutput(job, output, *request.mesh, density.grid, nullptr);
     openvdb::GridCPtrVec written{makeOutput(run, request.kind, density.grid)};
     if (request.levels > 0) {
         ResampleOptions options;
@@ -301,7 +301,7 @@ void convertGridSolid(const CommandLine& line) {
             written.push_back(level);
         }
     }
-    run.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, written, request.write); });
+    job.writeVolume(output, written, request.write);
 }
 
 openvdb::FloatGrid::Ptr rebuildLevelSet(CommandRun& run, const openvdb::FloatGrid::Ptr& levelSet,

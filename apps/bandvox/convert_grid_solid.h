@@ -2,6 +2,7 @@
 
 #include "command_line.h"
 #include "command_run.h"
+#include "convert_job.h"
 #include "lattice_request.h"
 
 #include <bandvox/resample/resample_grid.h>
@@ -18,7 +19,7 @@ bool takesSolidOfGrid(const CommandLine& line);
 
 /// Runs `convert` for the solid of a .vdb file's grid, or of an array: what is above a value
 /// becomes a band-limited density, a level set, fog or a mesh.
-void convertGridSolid(const CommandLine& line);
+void convertGridSolid(ConvertJob& job);
 
 /// The lattice and the filter for a grid.
 struct RebuildRequest {

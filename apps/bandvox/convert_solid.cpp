@@ -54,8 +54,10 @@ struct ConvertRequest {
     DensityOptions density;
     bool color = false;
     int levels = 0;  ///< coarser ones beside the density
-    std::optional<int> oversample;
-    std::optional<double> samplingTolerance;  ///< if it was asked for
+    bool oversampleGiven = false;
+    int samplesPerSide = FieldDensityOptions().oversample;  // of the sampled route
+    int rowsPerVoxel = SoupDensityOptions().rowsPerVoxel;   // of that of the winding number
+    std::optional<double> samplingTolerance;                ///< if it was asked for
     VdbWriteOptions write;
     std::optional<MeshOutput> mesh;  ///< instead of the density
     IsoOption iso;
@@ -85,14 +87,16 @@ void readRoute(const CommandLine& line, ConvertRequest& request) {
                         "--oversample has no meaning on the exact route; expected "
                         "--route sampled with a shape, or another --route with a mesh");
         }
-        request.oversample = line.wholeNumber("oversample", 1, kMostOversample, 1);
+        request.oversampleGiven = true;
     }
+    request.samplesPerSide =
+        line.wholeNumber("oversample", 1, kMostOversample, request.samplesPerSide);
+    request.rowsPerVoxel = line.wholeNumber("oversample", 1, kMostOversample, request.rowsPerVoxel);
     // Sampling is by far the largest error, so what is allowed is allowed to it.
     DensityOptions& density = request.density;
-    if (!line.has("tolerance")) return;
     const double tolerance =
         line.number("tolerance", {.low = 1e-6, .high = 0.05}, density.tolerance);
-    request.samplingTolerance = tolerance;
+    if (line.has("tolerance")) request.samplingTolerance = tolerance;
     density.tolerance = isSampling ? std::min(density.tolerance, tolerance) : tolerance;
 }
 
@@ -117,8 +121,9 @@ ConvertRequest parseConvert(const CommandLine& line) {
         throw Error(ErrorKind::Usage, "option --tile is '" + std::to_string(density.tile) +
                                           "'; expected an even number");
     }
-    request.iso = readIso(line, {.low = 0, .high = 1, .lowOpen = true, .highOpen = true});
-    density.iso = request.iso.value.value_or(density.iso);
+    const Range between{.low = 0, .high = 1, .lowOpen = true, .highOpen = true};
+    request.iso = readIso(line, between);
+    if (!request.iso.byVolume) density.iso = line.number("iso", between, density.iso);
     if (asksForValues(line)) {
         throw Error(ErrorKind::Usage, "--as values is for volumes, and '" + request.input +
                                           "' is a solid; expected density, level-set or fog");
@@ -191,7 +196,7 @@ DensityResult meshToDensity(CommandRun& run, const ConvertRequest& request, Mesh
     if (mesh.soup.triangles.empty()) {
         const MeshSource source(mesh.name, std::move(mesh.solid));
         result = surfaceToDensity(source, request.density, run.progress());
-        if (request.oversample) {
+        if (request.oversampleGiven) {
             result.warnings.push_back(
                 "--oversample was not used: caps close the whole mesh, which took the exact route");
         }
@@ -199,7 +204,7 @@ DensityResult meshToDensity(CommandRun& run, const ConvertRequest& request, Mesh
         SoupDensityOptions options;
         options.density = request.density;
         options.density.tolerance = std::min(options.density.tolerance, DensityOptions().tolerance);
-        options.rowsPerVoxel = request.oversample.value_or(options.rowsPerVoxel);
+        options.rowsPerVoxel = request.rowsPerVoxel;
         options.samplingTolerance = request.samplingTolerance.value_or(options.samplingTolerance);
         result = soupToDensity({mesh.name, std::move(mesh.soup), std::move(mesh.solid)}, options,
                                run.progress());
@@ -228,7 +233,7 @@ DensityResult shapeToDensity(CommandRun& run, const ConvertRequest& request) {
     }
     FieldDensityOptions options;
     options.density = request.density;
-    options.oversample = request.oversample.value_or(options.oversample);
+    options.oversample = request.samplesPerSide;
     options.samplingTolerance = request.samplingTolerance.value_or(options.samplingTolerance);
     DensityResult result = fieldToDensity(*makeShapeField(request.input), options, run.progress());
     // Of a shape, unlike other fields, the volume is known.
@@ -282,10 +287,11 @@ std::vector<openvdb::FloatGrid::Ptr> makeLevels(CommandRun& run, const ConvertRe
 
 }  // namespace
 
-void convertSolid(const CommandLine& line) {
-    const ConvertRequest request = parseConvert(line);
+void convertSolid(ConvertJob& job) {
+    const ConvertRequest request = parseConvert(job.line());
     requireMeshOrShape("convert", request.input);
-    CommandRun run(line);
+    if (!job.begin()) return;
+    CommandRun& run = job.run();
     AtomicFile output(request.output);
 
     ConvertedGrids grids = isShape(request.input) ? ConvertedGrids{shapeToDensity(run, request), {}}
@@ -308,14 +314,14 @@ void convertSolid(const CommandLine& line) {
 
     if (request.mesh) {
         const auto colors = grids.color ? grids.color->grid : nullptr;
-        return writeMeshOutput(run, output, *request.mesh, result.grid, colors);
+        return writeMeshOutput(job, output, *request.mesh, result.grid, colors);
     }
     openvdb::GridCPtrVec written{makeOutput(run, request.kind, result.grid)};
     if (request.levels > 0) {
         for (const auto& level : makeLevels(run, request, result.grid)) written.push_back(level);
     }
     if (grids.color) written.push_back(grids.color->grid);
-    run.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, written, request.write); });
+    job.writeVolume(output, written, request.write);
 }
 
 }  // namespace bandvox::app

@@ -24,7 +24,8 @@ bool convertsGridToMesh(const CommandLine& line) {
            isWritableMesh(line.text("output").value_or(""));
 }
 
-void convertGridToMesh(const CommandLine& line) {
+void convertGridToMesh(ConvertJob& job) {
+    const CommandLine& line = job.line();
     refuseOptions(line,
                   {"resolution", "voxel-size", "cutoff", "order", "tolerance", "tile", "route",
                    "oversample", "overlap", "clamp", "half", "compression", "background", "factor",
@@ -33,7 +34,8 @@ void convertGridToMesh(const CommandLine& line) {
     const std::string& input = line.positional(0);
     MeshOutput options = readMeshOutput(line);
     const IsoOption iso = readIso(line, {});
-    CommandRun run(line);
+    if (!job.begin()) return;
+    CommandRun& run = job.run();
     AtomicFile output(options.path);
 
     openvdb::GridPtrVec grids;
@@ -53,7 +55,7 @@ void convertGridToMesh(const CommandLine& line) {
             (colors ? ", with colours" : ""));
     grids.clear();
     options.iso = isoFor(run, iso, grid);
-    writeMeshOutput(run, output, options, grid, colors);
+    writeMeshOutput(job, output, options, grid, colors);
 }
 
 }  // namespace bandvox::app

@@ -235,9 +235,10 @@ int readDetailLevels(const CommandLine& line) {
     return line.wholeNumber("lod", 0, kMostLevels, 0);
 }
 
-void convertVolume(const CommandLine& line) {
-    const VolumeRequest request = parseVolume(line);
-    CommandRun run(line);
+void convertVolume(ConvertJob& job) {
+    const VolumeRequest request = parseVolume(job.line());
+    if (!job.begin()) return;
+    CommandRun& run = job.run();
     AtomicFile output(request.output);
     const openvdb::math::Transform::ConstPtr onto = readOnto(request.lattice);
     run.say("read     " + request.input);
@@ -260,7 +261,7 @@ void convertVolume(const CommandLine& line) {
         throw Error(ErrorKind::Result, "nothing would be written: no grid of '" + request.input +
                                            "' has active voxels that are left");
     }
-    run.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, written, request.write); });
+    job.writeVolume(output, written, request.write);
 }
 
 }  // namespace bandvox::app
