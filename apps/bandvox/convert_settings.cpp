@@ -310,7 +310,8 @@ CommandLine withLikedSettings(const CommandLine& line) {
     // --as and --threshold, which are among them, can decide what the conversion is.
     CommandLine all = line;
     for (const auto& [name, setting] : settings) {
-        if (!setting.isDefault && !line.decides(name) && setting.value != "false") {
+        const bool isGiven = !setting.isDefault && name != "shard" && setting.value != "false";
+        if (isGiven && !line.decides(name)) {
             all.setUndecided(name, setting.value, *file);
         }
     }
@@ -322,6 +323,7 @@ CommandLine withLikedSettings(const CommandLine& line) {
     const Settings known = defaultsOf(isSame ? all : line, conversion);
     CommandLine liked = line;
     for (const auto& [name, setting] : settings) {
+        if (name == "shard") continue;  // the whole is like the part
         const OptionEntry* option = findOption(line.table(), name);
         if (option == nullptr) {
             throw Error(ErrorKind::Input, "'" + *file + "' was made with --" + name +
