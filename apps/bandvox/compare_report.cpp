@@ -121,7 +121,7 @@ void appendSurfaces(std::string& out, const SurfaceDifference& surfaces,
                     const std::optional<double>& voxel) {
     out += "\nsurfaces\n";
     appendLine(out, "Hausdorff",
-               lengthInWords(surfaces.hausdorff, voxel) + ", certainly no more than " +
+               lengthInWords(surfaces.hausdorff, voxel) + ", no more than " +
                    lengthInWords(surfaces.hausdorffAtMost, voxel));
     appendSide(out, "from A to B", surfaces.fromA, voxel);
     appendSide(out, "from B to A", surfaces.fromB, voxel);

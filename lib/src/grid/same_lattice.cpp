@@ -89,8 +89,12 @@ std::string latticeDifference(const openvdb::math::Transform& first,
     if (!relation.haveSameSteps) {
         std::string text = "their voxels have sides " + listed(first.voxelSize());
         text += " and " + listed(other.voxelSize());
-        text += ", and axes that are turned by up to " + inShort(largestTurn(first, other));
-        return text + " degrees";
+        constexpr double kLeastTurn = 1e-5;  // degrees
+        const double turn = largestTurn(first, other);
+        if (turn > kLeastTurn) {
+            text += ", and axes that are turned by up to " + inShort(turn) + " degrees";
+        }
+        return text;
     }
     if (!relation.isWhole) {
         return "they are " + listed(relation.offset) +
