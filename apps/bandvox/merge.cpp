@@ -27,9 +27,9 @@ const CommandTable& mergeTable() {
         "merge",
         "Merge the densities of .vdb files: their union, sum, difference, ...",
         "Merges the densities of several .vdb files on the lattice of the first. Sums and blends "
-        "of band-limited densities are band-limited; products and maxima are, except within a "
-        "filter's width of where two surfaces meet. Other grids of the files, as colours, are "
-        "left away, and said so.",
+        "of band-limited densities are what the filtered sum would be. The others are, except "
+        "within a filter's width of where two surfaces meet; the maximum has kinks there that no "
+        "lattice holds. Other grids of the files, as colours, are left away, and said so.",
         {{"A.vdb",
           "A .vdb file, whose lattice the result has; one input may be stdin.vdb, the "
           "standard input."},

@@ -10,10 +10,11 @@
 namespace bandvox {
 
 /// What becomes of the densities a, b, ... at a voxel. Sum and Blend are linear: what is
-/// band-limited stays so, exactly. A product of two densities has frequencies up to the sum of
-/// theirs, and a maximum has kinks: within a filter's width of where the surfaces of two solids
-/// meet, the others are not the filtered union, difference or intersection, and hold frequencies
-/// that the lattice cannot (docs/compare-and-merge.md). Elsewhere they are, exactly.
+/// band-limited stays so, exactly. The others differ from the filtered union, difference or
+/// intersection of the solids within a filter's width of where their surfaces meet, by up to 0.1 or
+/// so, Max by 0.15; elsewhere they are it. There a product has frequencies up to the sum of those
+/// of a and of b, of which the default filter leaves less than its tolerance beyond Nyquist, and
+/// Max has kinks, of which the lattice loses some 0.05 (docs/compare-and-merge.md).
 enum class MergeOperation {
     Union,         ///< 1 - (1 - a)(1 - b)...: a + b - ab of two
     Sum,           ///< a + b + ..., each times its weight
