@@ -2,10 +2,12 @@
 
 #include "command_run.h"
 #include "commands.h"
+#include "convert_grid_solid.h"
 #include "convert_solid.h"
 #include "convert_to_mesh.h"
 #include "convert_volume.h"
 #include "mesh_output.h"
+#include "output_kind.h"
 #include "solid_input.h"
 #include "volume_options.h"
 #include "words.h"
@@ -28,6 +30,7 @@ const CommandTable& convertTable() {
             options.insert(options.end(), entries.begin(), entries.end());
         };
         add(latticeEntries());
+        add(gridSolidEntries());
         add(filterEntries(density.filter));
         add({
             {"tolerance", 0, "E", formatNumber(density.tolerance),
@@ -56,7 +59,9 @@ const CommandTable& convertTable() {
             {"clamp", 0, "", "", "Limit the density to 0 .. 1, which cuts off ringing.", filter},
             {"iso", 0, "D", formatNumber(density.iso),
              "Value that is the surface, of a mesh or for the commands that come after. Of a .vdb "
-             "input it is the one stored there, else 0.5, and 0 of a level set.",
+             "input it is the one stored there, else 0.5, and 0 of a level set. volume: the value "
+             "that "
+             "encloses the volume of the source.",
              filter},
             {"color", 0, "", "",
              "Write the colours of the mesh beside its density, as a grid Cd, or with the points "
@@ -70,6 +75,7 @@ const CommandTable& convertTable() {
             compressionEntry(),
             adaptivityEntry(),
         });
+        add(outputKindEntries());
         return CommandTable{
             "convert",
             "Turn a mesh, a built-in shape or a volume into a band-limited volume or its surface.",
@@ -93,6 +99,10 @@ const CommandTable& convertTable() {
                  "The same on voxels four times as large."},
                 {"bandvox convert bunny.vdb -o levels.vdb --lod 3",
                  "With three coarser levels of detail."},
+                {"bandvox convert scan.nrrd -o bone.vdb --threshold 300 --factor 2",
+                 "What of a scan is above 300, on voxels twice as large."},
+                {"bandvox convert bunny.obj -o distances.vdb --as level-set",
+                 "Distances from the surface of that."},
                 {"bandvox convert spot.obj -o spot.vdb --color",
                  "The density, and the colours of the surface around it."},
                 {"bandvox convert spot.vdb -o spot.ply", "The surface of that, with its colours."},
@@ -104,6 +114,7 @@ const CommandTable& convertTable() {
 }
 
 void runConvert(const CommandLine& line) {
+    if (takesSolidOfGrid(line)) return convertGridSolid(line);
     if (convertsGridToMesh(line)) return convertGridToMesh(line);
     const std::string& input = line.positional(0);
     if (!isShape(input) && (extensionOf(input) == ".vdb" || isArrayFile(input))) {

@@ -6,7 +6,10 @@
 #include "color_grid.h"
 #include "command_run.h"
 #include "convert_volume.h"
+#include "density_report.h"
+#include "iso_option.h"
 #include "mesh_output.h"
+#include "output_kind.h"
 #include "solid_input.h"
 #include "standard_streams.h"
 #include "volume_options.h"
@@ -55,6 +58,8 @@ struct ConvertRequest {
     std::optional<double> samplingTolerance;  ///< if it was asked for
     VdbWriteOptions write;
     std::optional<MeshOutput> mesh;  ///< instead of the density
+    IsoOption iso;
+    OutputKind kind;
 };
 
 void readRoute(const CommandLine& line, ConvertRequest& request) {
@@ -98,7 +103,7 @@ ConvertRequest parseConvert(const CommandLine& line) {
     request.mesh = readVdbOrMeshOutput(line);
     request.output = outputPath(output);
 
-    for (const char* name : {"grid", "background", "factor", "onto", "no-filter"}) {
+    for (const char* name : {"grid", "background", "factor", "onto", "no-filter", "threshold"}) {
         if (!line.has(name)) continue;
         throw Error(ErrorKind::Usage, std::string("option --") + name + " is for volumes, and '" +
                                           request.input + "' is none");
@@ -112,8 +117,13 @@ ConvertRequest parseConvert(const CommandLine& line) {
         throw Error(ErrorKind::Usage, "option --tile is '" + std::to_string(density.tile) +
                                           "'; expected an even number");
     }
-    density.iso =
-        line.number("iso", {.low = 0, .high = 1, .lowOpen = true, .highOpen = true}, density.iso);
+    request.iso = readIso(line, {.low = 0, .high = 1, .lowOpen = true, .highOpen = true});
+    density.iso = request.iso.value.value_or(density.iso);
+    if (asksForValues(line)) {
+        throw Error(ErrorKind::Usage, "--as values is for volumes, and '" + request.input +
+                                          "' is a solid; expected density, level-set or fog");
+    }
+    request.kind = readOutputKind(line).value_or(OutputKind());
     density.clamp = line.has("clamp");
     request.overlap = static_cast<Overlap>(line.choice("overlap", {"union", "sum"}, 0));
     density.sumOverlaps = request.overlap == Overlap::Sum;
@@ -158,47 +168,6 @@ std::string errorInWords(const ConvertRequest& request, const DensityResult& res
         words += "; 16 bits change it by up to " + formatNumber(metadata.storageError, 2);
     }
     return words;
-}
-
-void sayResult(CommandRun& run, const ConvertRequest& request, const DensityResult& result) {
-    const DensityMetadata& metadata = result.metadata;
-    const auto activeVoxels = static_cast<std::int64_t>(result.grid->activeVoxelCount());
-    const openvdb::Coord size = result.grid->evalActiveVoxelBoundingBox().dim();
-    run.say("grid     " + std::to_string(size.x()) + " x " + std::to_string(size.y()) + " x " +
-            std::to_string(size.z()) + " voxels of side " +
-            formatNumber(result.grid->voxelSize().x()) + ", " +
-            formatCount(activeVoxels, "active voxel", "active voxels") + ", density " +
-            formatNumber(result.minimum) + " to " + formatNumber(result.maximum));
-    run.sayMore(
-        "tiles    " + std::to_string(result.tiles) + " of side " + std::to_string(result.tileSide) +
-        " with a halo of " + std::to_string(result.halo) +
-        (result.fieldSamples > 0
-             ? ", from " + formatCount(result.fieldSamples, "sample", "samples")
-             : ", spread over " + std::to_string(result.kernelWidth) + " voxels from " +
-                   formatCount(result.surfaceSamples, "surface sample", "surface samples")));
-    run.say("error    " + errorInWords(request, result));
-    const double difference =
-        metadata.sourceVolume != 0
-            ? std::abs(metadata.gridVolume - metadata.sourceVolume) / metadata.sourceVolume
-            : 0;
-    run.say("volume   source " + formatNumber(metadata.sourceVolume, 8) + ", grid " +
-            formatNumber(metadata.gridVolume, 8) + ", relative difference " +
-            formatNumber(difference, 2));
-
-    run.count("active_voxels", activeVoxels);
-    run.count("surface_samples", result.surfaceSamples);
-    run.count("field_samples", result.fieldSamples);
-    run.count("tiles", result.tiles);
-    run.count("tile_side", result.tileSide);
-    run.count("halo", result.halo);
-    run.count("kernel_width", result.kernelWidth);
-    run.count("spread_thread_seconds", result.spreadSeconds);
-    run.count("transform_thread_seconds", result.transformSeconds);
-    run.count("closure_error", metadata.closureError);
-    run.count("sampling_error", metadata.samplingError);
-    run.count("storage_error", metadata.storageError);
-    run.count("source_volume", metadata.sourceVolume);
-    run.count("grid_volume", metadata.gridVolume);
 }
 
 /// What goes into the file.
@@ -323,7 +292,11 @@ void convertSolid(const CommandLine& line) {
         result.metadata.gridVolume = densityIntegral(*result.grid);
     }
     setDensityMetadata(*result.grid, result.metadata);
-    sayResult(run, request, result);
+    if (const auto iso = isoFor(run, request.iso, result.grid)) {
+        result.metadata.iso = *iso;
+        setDensityMetadata(*result.grid, result.metadata);
+    }
+    sayDensity(run, result, errorInWords(request, result));
     if (grids.color) sayColors(run, *grids.color);
     run.warn(result.warnings, ErrorKind::Result);
 
@@ -331,7 +304,7 @@ void convertSolid(const CommandLine& line) {
         const auto colors = grids.color ? grids.color->grid : nullptr;
         return writeMeshOutput(run, output, *request.mesh, result.grid, colors);
     }
-    openvdb::GridCPtrVec written{result.grid};
+    openvdb::GridCPtrVec written{makeOutput(run, request.kind, result.grid)};
     if (request.levels > 0) {
         for (const auto& level : makeLevels(run, request, result.grid)) written.push_back(level);
     }

@@ -4,6 +4,7 @@
 
 #include "choose_grid.h"
 #include "command_run.h"
+#include "iso_option.h"
 #include "mesh_output.h"
 #include "standard_streams.h"
 #include "words.h"
@@ -27,11 +28,11 @@ void convertGridToMesh(const CommandLine& line) {
     refuseOptions(line,
                   {"resolution", "voxel-size", "cutoff", "order", "tolerance", "tile", "route",
                    "oversample", "overlap", "clamp", "half", "compression", "background", "factor",
-                   "onto", "no-filter", "lod"},
+                   "onto", "no-filter", "lod", "band"},
                   "where a mesh is made of a .vdb file, which is not filtered again");
     const std::string& input = line.positional(0);
     MeshOutput options = readMeshOutput(line);
-    if (line.has("iso")) options.iso = line.number("iso", {}, 0);
+    const IsoOption iso = readIso(line, {});
     CommandRun run(line);
     AtomicFile output(options.path);
 
@@ -51,6 +52,7 @@ void convertGridToMesh(const CommandLine& line) {
                         "active voxels") +
             (colors ? ", with colours" : ""));
     grids.clear();
+    options.iso = isoFor(run, iso, grid);
     writeMeshOutput(run, output, options, grid, colors);
 }
 

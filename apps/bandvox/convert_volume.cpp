@@ -5,6 +5,9 @@
 
 #include "choose_grid.h"
 #include "command_run.h"
+#include "convert_grid_solid.h"
+#include "iso_option.h"
+#include "lattice_request.h"
 #include "mesh_output.h"
 #include "standard_streams.h"
 #include "volume_options.h"
@@ -33,16 +36,6 @@ constexpr int kMostLevels = 16;
 // Options that say how a solid becomes a density.
 const char* const kOfSolids[] = {"route", "oversample", "overlap", "clamp", "color", "tile"};
 
-/// The lattice that grids are brought to: one of these, or none.
-struct LatticeRequest {
-    std::optional<int> resolution;
-    std::optional<double> voxelSize;
-    std::optional<double> factor;
-    std::optional<std::string> onto;
-
-    bool isSame() const { return !resolution && !voxelSize && !factor && !onto; }
-};
-
 struct VolumeRequest {
     std::string input;
     std::filesystem::path output;
@@ -51,33 +44,10 @@ struct VolumeRequest {
     float background = 0;  // of an array
     bool resamples = false;
     ResampleOptions resample;
-    std::optional<double> iso;
+    IsoOption iso;
     int levels = 0;
     VdbWriteOptions write;
 };
-
-LatticeRequest readLattice(const CommandLine& line) {
-    LatticeRequest lattice;
-    int count = 0;
-    for (const char* name : {"resolution", "voxel-size", "factor", "onto"}) {
-        if (line.has(name)) ++count;
-    }
-    if (count > 1) {
-        throw Error(ErrorKind::Usage,
-                    "expected one of --resolution, --voxel-size, --factor and --onto, but got " +
-                        std::to_string(count));
-    }
-    if (line.has("resolution")) {
-        lattice.resolution = line.wholeNumber("resolution", 1, 1 << 20, 1);
-    }
-    const Range positive{.low = 0, .lowOpen = true};
-    if (line.has("voxel-size")) lattice.voxelSize = line.number("voxel-size", positive, 1);
-    if (line.has("factor")) {
-        lattice.factor = line.number("factor", {.low = 0.01, .high = 1e4}, 1);
-    }
-    lattice.onto = line.text("onto");
-    return lattice;
-}
 
 VolumeRequest parseVolume(const CommandLine& line) {
     VolumeRequest request;
@@ -94,6 +64,7 @@ VolumeRequest parseVolume(const CommandLine& line) {
                                           " is for meshes and shapes, and '" + request.input +
                                           "' is a volume already");
     }
+    refuseOptions(line, {"band"}, "with the values of a volume");
     request.grid = line.text("grid");
     if (line.has("background") && !isArrayFile(request.input)) {
         throw Error(ErrorKind::Usage, "--background is for arrays, and '" + request.input +
@@ -117,50 +88,16 @@ VolumeRequest parseVolume(const CommandLine& line) {
     request.resample.tolerance =
         line.number("tolerance", {.low = 1e-6, .high = 0.05}, request.resample.tolerance);
     request.resamples = filters || !request.lattice.isSame();
-    if (line.has("iso")) {
-        request.iso = line.number("iso", {}, 0.5);
-    }
+    request.iso = readIso(line, {});
     request.levels = readDetailLevels(line);
     request.write.half = line.has("half");
     request.write.compression = readCompression(line);
     return request;
 }
 
-// A lattice for a grid of any type.
-openvdb::math::Transform::Ptr targetFor(const openvdb::GridBase& grid,
-                                        const LatticeRequest& request,
-                                        const openvdb::math::Transform::ConstPtr& onto) {
-    if (onto) return onto->copy();
-    if (request.voxelSize) return uniformLattice(grid, *request.voxelSize);
-    if (request.resolution) {
-        const openvdb::Vec3d size =
-            grid.voxelSize() * grid.evalActiveVoxelBoundingBox().dim().asVec3d();
-        const double longest = std::max({size[0], size[1], size[2]});
-        return uniformLattice(grid, longest / *request.resolution);
-    }
-    auto target = grid.transform().copy();
-    if (request.factor) target->preScale(*request.factor);
-    return target;
-}
-
-openvdb::math::Transform::ConstPtr readOnto(const LatticeRequest& request) {
-    if (!request.onto) return nullptr;
-    const openvdb::GridPtrVec grids = readGrids(*request.onto);
-    if (grids.empty()) {
-        throw Error(ErrorKind::Input, "'" + *request.onto + "' has no grids, so no lattice");
-    }
-    return grids.front()->transformPtr();
-}
-
-std::string dimensionsOf(const openvdb::GridBase& grid) {
-    const openvdb::Coord size = grid.evalActiveVoxelBoundingBox().dim();
-    std::string text = std::to_string(size.x());
-    text += " x " + std::to_string(size.y()) + " x " + std::to_string(size.z());
-    return text;
-}
-
 void sayGrid(CommandRun& run, const openvdb::GridBase& grid) {
-    run.say("grid     " + grid.getName() + ": " + dimensionsOf(grid) + " voxels of side " +
+    run.say("grid     " + grid.getName() + ": " +
+            formatSize(grid.evalActiveVoxelBoundingBox().dim()) + " voxels of side " +
             formatNumber(grid.voxelSize().x()) + ", " +
             formatCount(static_cast<std::int64_t>(grid.activeVoxelCount()), "active voxel",
                         "active voxels"));
@@ -180,6 +117,11 @@ openvdb::GridPtrVec convertGrid(CommandRun& run, const VolumeRequest& request,
         return {resampleVectors(vectors, *target, request.resample, run.progress())};
     }
     openvdb::FloatGrid::Ptr floats = asFloatGrid(grid);
+    // Filtered distances are none; those of the filtered solid are.
+    if (floats && floats->getGridClass() == openvdb::GRID_LEVEL_SET && request.resamples &&
+        request.resample.filter && request.levels == 0) {
+        return {rebuildLevelSet(run, floats, {request.lattice, onto, request.resample})};
+    }
     if (!floats) {
         run.warn({"the grid '" + grid->getName() + "' of type " + grid->valueType() +
                   " was left away: it cannot be filtered"},
@@ -236,8 +178,13 @@ void setIso(openvdb::GridBase& grid, double iso) {
 }
 
 // Rounds to 16 bits, if that is asked for, and says so in the grid.
-void finishGrid(openvdb::GridBase& grid, const VolumeRequest& request) {
-    if (request.iso) setIso(grid, *request.iso);
+void finishGrid(CommandRun& run, const openvdb::GridBase::Ptr& converted,
+                const VolumeRequest& request) {
+    openvdb::GridBase& grid = *converted;
+    if (densityMetadata(grid)) {
+        const auto density = openvdb::gridPtrCast<openvdb::FloatGrid>(converted);
+        if (const auto iso = isoFor(run, request.iso, density)) setIso(grid, *iso);
+    }
     auto* floats = dynamic_cast<openvdb::FloatGrid*>(&grid);
     if (!floats || !request.write.half) return;
     const double change = roundToHalf(*floats);
@@ -285,7 +232,7 @@ void convertVolume(const CommandLine& line) {
     std::int64_t activeVoxels = 0;
     for (openvdb::GridBase::Ptr& grid : grids) {
         for (const auto& converted : convertGrid(run, request, grid, onto)) {
-            finishGrid(*converted, request);
+            finishGrid(run, converted, request);
             sayGrid(run, *converted);
             activeVoxels += static_cast<std::int64_t>(converted->activeVoxelCount());
             written.push_back(converted);
