@@ -4,6 +4,7 @@
 #include "command_run.h"
 #include "commands.h"
 #include "compare_report.h"
+#include "iso_option.h"
 #include "solid_input.h"
 #include "standard_streams.h"
 #include "vdb_input.h"
@@ -42,7 +43,7 @@ bool isOfValues(Metric metric) {
 struct CompareRequest {
     std::array<std::string, 2> inputs;
     std::optional<std::string> grid;
-    std::optional<double> iso;
+    IsoOption iso;
     bool values = true, surfaces = true;
     double tolerance = 0;  // of the largest distance, voxels
     int cuts = 1;
@@ -75,7 +76,9 @@ const CommandTable& compareTable() {
         {
             {"grid", 0, "NAME", "density", "The grid to take of .vdb files.", "Comparison"},
             {"iso", 0, "D", "stored, or 0.5",
-             "Value that is the surface, in both; 0 of level sets.", "Comparison"},
+             "Value that is the surface, in both; 0 of level sets. volume: of each that which "
+             "encloses the volume of its source.",
+             "Comparison"},
             {"only", 0, "PART", "both", "values or surfaces: compare no more than these.",
              "Comparison"},
             {"distance-tolerance", 0, "V", formatNumber(kDistanceTolerance),
@@ -146,13 +149,18 @@ CompareRequest parseCompare(const CommandLine& line) {
                     "stdin.vdb is there twice; the standard input can be one input only");
     }
     request.grid = line.text("grid");
-    if (line.has("iso")) request.iso = line.number("iso", {}, 0.5);
+    request.iso = readIso(line, {});
     const std::size_t only = line.choice("only", {"values", "surfaces"}, 2);
     if (only == 0 && withMesh) {
         throw Error(ErrorKind::Usage, "--only values needs two .vdb files; a mesh has no values");
     }
     request.values = only != 1 && !withMesh;
     request.surfaces = only != 0;
+    for (const char* name : {"iso", "cuts", "distance-tolerance"}) {
+        if (request.surfaces || !line.has(name)) continue;
+        throw Error(ErrorKind::Usage, std::string("option --") + name +
+                                          " is about surfaces, and --only values leaves them out");
+    }
     request.tolerance =
         line.number("distance-tolerance", {.low = 1e-4, .high = 10}, kDistanceTolerance);
     request.cuts = line.wholeNumber("cuts", 0, 3, request.cuts);
@@ -190,8 +198,9 @@ void loadGrid(CommandRun& run, const std::string& input, const CompareRequest& r
             formatCount(static_cast<std::int64_t>(loaded.grid->activeVoxelCount()), "active voxel",
                         "active voxels"));
     if (!request.surfaces) return;
-    GridSurface made =
-        gridToSurface(loaded.grid, {.iso = request.iso, .cuts = request.cuts}, run.progress());
+    SurfaceOfGrid made = gridToSurface(
+        loaded.grid, {.iso = isoFor(run, request.iso, loaded.grid), .cuts = request.cuts},
+        run.progress());
     known.iso = made.iso;
     known.volume = made.volume;
     loaded.surface = std::move(made.surface);

@@ -121,6 +121,12 @@ openvdb::FloatGrid::Ptr readDensity(CommandRun& run, const std::string& input,
     run.say("read     " + input + ": grid '" + grid->getName() + "', " +
             formatCount(static_cast<std::int64_t>(grid->activeVoxelCount()), "active voxel",
                         "active voxels"));
+    if (grid->getGridClass() == openvdb::GRID_LEVEL_SET) {
+        throw Error(ErrorKind::Input, "the grid '" + grid->getName() + "' of '" + input +
+                                          "' is a level set; make a density of it first: bandvox "
+                                          "convert " +
+                                          input + " -o ... --as density");
+    }
     std::vector<std::string> left;
     for (const auto& other : grids) {
         if (other != grid && other->getName() != grid->getName()) {

@@ -127,6 +127,13 @@ TEST_F(Compare, AVolumeWithTheMeshThatItIsMadeOf) {
     EXPECT_TRUE(meshes["voxel"].is_null());
 }
 
+TEST_F(Compare, SurfacesMayBeThoseOfTheSourcesVolume) {
+    const auto found = report({"ball.vdb", "cube.vdb", "--iso", "volume", "--only", "surfaces"});
+    EXPECT_NEAR(found["a"]["volume"].get<double>(), 4 * 3.14159265 / 3, 1e-4);
+    EXPECT_NEAR(found["b"]["volume"].get<double>(), 8, 1e-4);
+    EXPECT_LT(found["a"]["iso"].get<double>(), 0.5);
+}
+
 TEST_F(Compare, FailsAboveWhatIsAllowed) {
     for (const char* metric :
          {"max", "rms", "hausdorff", "mean-distance", "volume", "integral", "angle"}) {
@@ -153,6 +160,7 @@ TEST_F(Compare, ComparesNoMoreThanWhatIsAskedFor) {
     const auto surfaces = report({"cube.vdb", "ball.vdb", "--only", "surfaces", "--cuts", "0"});
     EXPECT_TRUE(surfaces["values"].is_null());
     expectError({"cube.vdb", "cube.obj", "--only", "values"}, 2, {"--only"});
+    expectError({"cube.vdb", "ball.vdb", "--only", "values", "--iso", "0.4"}, 2, {"--iso"});
     expectError(
         {"cube.vdb", "ball.vdb", "--only", "values", "--fail-above", "1", "--metric", "angle"}, 2,
         {"angle"});

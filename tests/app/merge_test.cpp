@@ -161,6 +161,16 @@ TEST_F(Merge, SaysWhatItLeavesAway) {
     EXPECT_FALSE(densityMetadata(*only("filters.vdb")));
 }
 
+TEST_F(Merge, RefusesLevelSetsAndSaysWhatToDo) {
+    ASSERT_EQ(runBandvox({"convert", "ball.vdb", "-o", "distances.vdb", "--as", "level-set"},
+                         {.folder = sFolder->path()})
+                  .status,
+              0);
+    expectError({"cube.vdb", "distances.vdb", "-o", "none.vdb", "--grid", "surface"}, 3,
+                {"'surface'"});
+    expectError({"distances.vdb", "cube.vdb", "-o", "none.vdb"}, 3, {"level set", "--as density"});
+}
+
 TEST_F(Merge, RefusesWrongUsage) {
     expectError({"cube.vdb", "-o", "none.vdb"}, 2, {"B.vdb"});
     expectError({"cube.vdb", "ball.vdb"}, 2, {"-o"});

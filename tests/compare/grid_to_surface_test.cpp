@@ -25,7 +25,7 @@ openvdb::FloatGrid::Ptr sphereLevelSet(double radius, double voxel,
 TEST(GridToSurface, PointsLieOnASphereAndDeviationIsWhatTheTrianglesSag) {
     double before = 0;
     for (const int cuts : {0, 1, 2}) {
-        const GridSurface found = gridToSurface(sphereLevelSet(1, 0.1), {.cuts = cuts});
+        const SurfaceOfGrid found = gridToSurface(sphereLevelSet(1, 0.1), {.cuts = cuts});
         EXPECT_EQ(found.iso, 0);
         EXPECT_NEAR(found.voxel, 0.1, 1e-12);
         const ComparedSurface& surface = found.surface;
@@ -57,9 +57,9 @@ TEST(GridToSurface, PointsLieOnASphereAndDeviationIsWhatTheTrianglesSag) {
 }
 
 TEST(GridToSurface, DistancesOfLevelSetsAreThoseOfTheirForms) {
-    const GridSurface a = gridToSurface(sphereLevelSet(1, 0.08));
-    const GridSurface inside = gridToSurface(sphereLevelSet(0.8, 0.05));
-    const GridSurface shifted = gridToSurface(sphereLevelSet(1, 0.07, Vec3d(0.2, 0.1, 0)));
+    const SurfaceOfGrid a = gridToSurface(sphereLevelSet(1, 0.08));
+    const SurfaceOfGrid inside = gridToSurface(sphereLevelSet(0.8, 0.05));
+    const SurfaceOfGrid shifted = gridToSurface(sphereLevelSet(1, 0.07, Vec3d(0.2, 0.1, 0)));
     const double tolerance = 2e-3;
     const SurfaceDifference smaller =
         compareSurfaces(a.surface, inside.surface, {.tolerance = tolerance});
@@ -98,7 +98,7 @@ TEST(GridToSurface, ASphereShrinksByWhatItsFilterDoes) {
     const auto coarse = surfaceToDensity(*source, options).grid;
     options.resolution = 41;
     const auto fine = surfaceToDensity(*source, options).grid;
-    const GridSurface a = gridToSurface(coarse), b = gridToSurface(fine);
+    const SurfaceOfGrid a = gridToSurface(coarse), b = gridToSurface(fine);
     EXPECT_EQ(a.iso, 0.5);
     const double expected = radiusOfHalf(options.filter.cutoff, 2.0 / 41) -
                             radiusOfHalf(options.filter.cutoff, 2.0 / 24);
@@ -115,7 +115,7 @@ TEST(GridToSurface, ASphereShrinksByWhatItsFilterDoes) {
 
 TEST(GridToSurface, RefusesWhatHasNoSurface) {
     const auto kindOf = [](const openvdb::FloatGrid::ConstPtr& grid,
-                           const GridSurfaceOptions& options = {}) {
+                           const GridToSurfaceOptions& options = {}) {
         try {
             gridToSurface(grid, options);
         } catch (const Error& error) {

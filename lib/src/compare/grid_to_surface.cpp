@@ -19,8 +19,8 @@ constexpr int kMostCuts = 3;
 
 }  // namespace
 
-GridSurface gridToSurface(const openvdb::FloatGrid::ConstPtr& grid,
-                          const GridSurfaceOptions& options, Progress& progress) {
+SurfaceOfGrid gridToSurface(const openvdb::FloatGrid::ConstPtr& grid,
+                            const GridToSurfaceOptions& options, Progress& progress) {
     if (!grid) throw Error(ErrorKind::Usage, "a surface needs a grid, but got none");
     if (options.cuts < 0 || options.cuts > kMostCuts) {
         throw Error(ErrorKind::Usage, "triangles should be cut " + std::to_string(options.cuts) +
@@ -31,7 +31,7 @@ GridSurface gridToSurface(const openvdb::FloatGrid::ConstPtr& grid,
     meshing.tolerance = 1e-4;
     MeshResult made = densityToMesh(grid, meshing, progress);
 
-    GridSurface result;
+    SurfaceOfGrid result;
     result.iso = made.iso;
     result.volume = made.volume;
     result.voxel = shortestVoxelSide(*grid);

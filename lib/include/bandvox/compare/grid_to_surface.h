@@ -12,13 +12,13 @@
 namespace bandvox {
 
 /// How the surface of a grid is made for comparing it.
-struct GridSurfaceOptions {
+struct GridToSurfaceOptions {
     std::optional<double> iso;  ///< as MeshOptions::iso
     int cuts = 1;               ///< how often each triangle is cut into four, 0 to 3
 };
 
 /// The surface of a grid, to be compared.
-struct GridSurface {
+struct SurfaceOfGrid {
     ComparedSurface surface;  ///< with the field's normals; `deviation` was measured
     double iso = 0;           ///< the value that is the surface
     double volume = 0;        ///< inside the mesh that densityToMesh made, world units³
@@ -33,8 +33,8 @@ struct GridSurface {
 ///
 /// The same for any number of threads. Throws as densityToMesh, and Error(ErrorKind::Usage) for
 /// options out of range.
-GridSurface gridToSurface(const openvdb::FloatGrid::ConstPtr& grid,
-                          const GridSurfaceOptions& options = {},
-                          Progress& progress = silentProgress());
+SurfaceOfGrid gridToSurface(const openvdb::FloatGrid::ConstPtr& grid,
+                            const GridToSurfaceOptions& options = {},
+                            Progress& progress = silentProgress());
 
 }  // namespace bandvox
