@@ -24,7 +24,7 @@ struct CompareSurfacesOptions {
     /// diagonal of the box around both.
     double tolerance = 0;
     /// Triangles may be cut into this many pieces in all while looking for it; ≥ 0.
-    std::size_t mostPieces = std::size_t(1) << 25;
+    std::size_t mostPieces = std::size_t(1) << 23;
 };
 
 /// How far one surface is from another: of each of its points the distance to the nearest point of
