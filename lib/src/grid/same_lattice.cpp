@@ -41,7 +41,7 @@ LatticeRelation relationOf(const openvdb::math::Transform& first,
         const double offset = map(3, row);
         relation.offset[row] = offset;
         const double allowed = kSameLattice * std::max(1.0, std::abs(offset));
-        constexpr double kFarthest = std::numeric_limits<int>::max() / 4;
+        constexpr double kFarthest = 0.25 * std::numeric_limits<int>::max();
         if (!(std::abs(offset - std::round(offset)) <= allowed && std::abs(offset) < kFarthest)) {
             relation.isWhole = false;
         }
