@@ -81,12 +81,17 @@ TEST_F(Compare, AFileIsLikeItself) {
 
 TEST_F(Compare, ABallInACube) {
     const auto found = report({"cube.vdb", "ball.vdb"});
-    EXPECT_NEAR(found["values"]["maximum"].get<double>(), 1, 1e-6);
-    // From the cube's corner, which the filter rounds, to the ball.
+    EXPECT_NEAR(found["values"]["maximum"].get<double>(), 1, 0.05);
+    // From a corner of the cube to the ball. A Gaussian of deviation s takes the cube's corners
+    // back to where the error function's cube is a half, and the ball's radius by s² / r.
+    constexpr double kDeviation = 0.1 / (1.41421356 * 3.14159265 * 0.16);
+    constexpr double kHalfOfCorner = 0.8193;  // Φ(it)³ = 0.5
     const double hausdorff = found["surfaces"]["hausdorff"];
-    EXPECT_NEAR(hausdorff, std::sqrt(3.0) - 1, 0.15);
+    EXPECT_NEAR(hausdorff,
+                std::sqrt(3.0) * (1 - kHalfOfCorner * kDeviation) - (1 - kDeviation * kDeviation),
+                3e-3);
     EXPECT_EQ(found["surfaces"]["from_a"]["maximum"], hausdorff);
-    EXPECT_NEAR(found["surfaces"]["from_b"]["maximum"].get<double>(), 1 - 1 / std::sqrt(3.0), 0.02);
+    EXPECT_NEAR(found["surfaces"]["from_b"]["maximum"].get<double>(), 1 - 1 / std::sqrt(3.0), 0.03);
     EXPECT_GE(found["surfaces"]["hausdorff_at_most"].get<double>(), hausdorff);
     EXPECT_NEAR(found["integral_difference"].get<double>(), 3.14159265 / 6 - 1, 1e-3);
     EXPECT_NEAR(found["voxel"].get<double>(), 0.1, 1e-9);
@@ -116,7 +121,7 @@ TEST_F(Compare, AVolumeWithTheMeshThatItIsMadeOf) {
         EXPECT_TRUE(found["b"]["grid"].is_null());
         EXPECT_NEAR(found["b"]["volume"].get<double>(), 8, 1e-9);
         // Faces are where they were; the filter takes the edges and corners away.
-        EXPECT_LT(found["surfaces"]["mean_distance"].get<double>(), 0.02);
+        EXPECT_LT(found["surfaces"]["mean_distance"].get<double>(), 0.05);
         EXPECT_GT(found["surfaces"]["from_b"]["maximum"].get<double>(), 0.05);
         EXPECT_LT(found["surfaces"]["from_b"]["maximum"].get<double>(), 0.3);
         const auto back = report({mesh, "cube.vdb"});
