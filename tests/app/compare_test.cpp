@@ -81,7 +81,7 @@ TEST_F(Compare, AFileIsLikeItself) {
 
 TEST_F(Compare, ABallInACube) {
     const auto found = report({"cube.vdb", "ball.vdb"});
-    EXPECT_NEAR(found["values"]["maximum"].get<double>(), 1, 0.05);
+    EXPECT_NEAR(found["values"]["maximum"].get<double>(), 0.9, 0.05) << "near a corner";
     // From a corner of the cube to the ball. A Gaussian of deviation s takes the cube's corners
     // back to where the error function's cube is a half, and the ball's radius by s² / r.
     constexpr double kDeviation = 0.1 / (1.41421356 * 3.14159265 * 0.16);
