@@ -3,6 +3,8 @@
 #include "choose_grid.h"
 #include "command_run.h"
 #include "commands.h"
+#include "merge_shards.h"
+#include "mesh_output.h"
 #include "standard_streams.h"
 #include "vdb_input.h"
 #include "volume_options.h"
@@ -29,7 +31,8 @@ const CommandTable& mergeTable() {
         "Merges the densities of several .vdb files on the lattice of the first. Sums and blends "
         "of band-limited densities are what the filtered sum would be. The others are, except "
         "within a filter's width of where two surfaces meet; the maximum has kinks there that no "
-        "lattice holds. Other grids of the files, as colours, are left away, and said so.",
+        "lattice holds. Other grids of the files, as colours, are left away, and said so. Of parts "
+        "that convert --shard has made all together become what one machine would have made.",
         {{"A.vdb",
           "A .vdb file, whose lattice the result has; one input may be stdin.vdb, the "
           "standard input."},
@@ -56,6 +59,8 @@ const CommandTable& mergeTable() {
         },
         {
             {"bandvox merge body.vdb hat.vdb -o both.vdb", "The union of two solids."},
+            {"bandvox merge part1.vdb part2.vdb part3.vdb -o whole.vdb",
+             "The parts of bandvox convert ... --shard 1/3, 2/3 and 3/3."},
             {"bandvox merge block.vdb drill.vdb -o part.vdb --operation difference --resample",
              "A solid without another, which is on a lattice of its own."},
             {"bandvox merge a.vdb b.vdb -o between.vdb --operation blend --weights 3,1",
@@ -112,11 +117,15 @@ MergeRequest parseMerge(const CommandLine& line) {
     return request;
 }
 
-openvdb::FloatGrid::Ptr readDensity(CommandRun& run, const std::string& input,
-                                    const MergeRequest& request) {
+openvdb::GridPtrVec readFile(CommandRun& run, const std::string& input) {
     const ProgressStage stage(run.progress(), "read", 0);
-    const openvdb::GridPtrVec grids = readGrids(input);
+    openvdb::GridPtrVec grids = readGrids(input);
     run.progress().throwIfInterrupted();
+    return grids;
+}
+
+openvdb::FloatGrid::Ptr chooseDensity(CommandRun& run, const openvdb::GridPtrVec& grids,
+                                      const std::string& input, const MergeRequest& request) {
     openvdb::FloatGrid::Ptr grid = chooseFloatGrid(grids, request.grid, "density", input);
     run.say("read     " + input + ": grid '" + grid->getName() + "', " +
             formatCount(static_cast<std::int64_t>(grid->activeVoxelCount()), "active voxel",
@@ -172,15 +181,33 @@ void roundMerged(openvdb::FloatGrid& grid) {
     setDensityMetadata(grid, *metadata);
 }
 
+// Joins parts, which say themselves what they are parts of.
+void runJoin(CommandRun& run, const CommandLine& line, const MergeRequest& request,
+             openvdb::GridPtrVec& first, AtomicFile& output) {
+    refuseOptions(line, {"operation", "weights", "clamp", "grid", "resample", "half"},
+                  "where parts are joined that convert --shard has made");
+    VdbWriteOptions write = request.write;
+    write.half = std::any_of(first.begin(), first.end(), [](const openvdb::GridBase::Ptr& grid) {
+        return grid->saveFloatAsHalf();
+    });
+    const openvdb::GridCPtrVec written = joinShardFiles(run, request.inputs, first);
+    first.clear();
+    run.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, written, write); });
+}
+
 }  // namespace
 
 void runMerge(const CommandLine& line) {
     const MergeRequest request = parseMerge(line);
     CommandRun run(line);
     AtomicFile output(request.output);
+    openvdb::GridPtrVec read = readFile(run, request.inputs[0]);
+    if (holdsShard(read)) return runJoin(run, line, request, read, output);
     std::vector<openvdb::FloatGrid::ConstPtr> grids;
     for (const std::string& input : request.inputs) {
-        openvdb::FloatGrid::ConstPtr grid = readDensity(run, input, request);
+        if (!grids.empty()) read = readFile(run, input);
+        openvdb::FloatGrid::ConstPtr grid = chooseDensity(run, read, input, request);
+        read.clear();
         if (!grids.empty()) grid = alignedTo(run, *grids.front(), grid, input, request);
         grids.push_back(grid);
     }

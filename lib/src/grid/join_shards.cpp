@@ -1,3 +1,5 @@
+#include "grid/constant_leaf.h"
+
 #include <bandvox/core/error.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/grid/join_shards.h>
@@ -8,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <set>
+#include <sstream>
 #include <string_view>
 
 namespace bandvox {
@@ -16,6 +19,7 @@ namespace {
 
 constexpr const char* kShard = "bandvox_shard";
 constexpr const char* kOverlaps = "bandvox_shard_overlaps";
+constexpr const char* kSettings = "bandvox_settings";
 constexpr const char* kRefinements = "bandvox_shard_refinements";
 
 [[noreturn]] void failJoin(const std::string& why) {
@@ -32,6 +36,20 @@ std::optional<Shard> parseShard(std::string_view text) {
     return shard;
 }
 
+// The settings that convert has stored, a line for each, without that of the part.
+std::string wholeSettings(const openvdb::GridBase& grid) {
+    const auto text = grid.getMetadata<openvdb::StringMetadata>(kSettings);
+    if (!text) return {};
+    std::string whole;
+    std::istringstream lines(text->value());
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("shard=")) continue;
+        if (!whole.empty()) whole += '\n';
+        whole += line;
+    }
+    return whole;
+}
+
 // What all parts have to share.
 void requireSameKind(const openvdb::GridBase& first, const openvdb::GridBase& other,
                      const std::string& firstName, const std::string& otherName) {
@@ -44,11 +62,12 @@ void requireSameKind(const openvdb::GridBase& first, const openvdb::GridBase& ot
     if (first.transform() != other.transform()) fail("the lattice");
     for (const char* name : {"bandvox_version", "bandvox_source", "bandvox_order", "bandvox_cutoff",
                              "bandvox_tolerance", "bandvox_route", "bandvox_iso",
-                             "bandvox_source_volume", "bandvox_settings"}) {
+                             "bandvox_source_volume", "bandvox_input"}) {
         const auto a = first[name];
         const auto b = other[name];
         if ((a == nullptr) != (b == nullptr) || (a && *a != *b)) fail(name);
     }
+    if (wholeSettings(first) != wholeSettings(other)) fail(kSettings);
 }
 
 // Adds the values of a part, where it has any, to those of the others, which have none there.
@@ -83,12 +102,9 @@ void addPart(Grid& whole, Grid& part, std::set<openvdb::Coord>& shared) {
 void makeTiles(openvdb::FloatGrid& grid, const std::set<openvdb::Coord>& shared) {
     for (const openvdb::Coord& origin : shared) {
         const auto* leaf = grid.tree().probeConstLeaf(origin);
-        const float* values = leaf->buffer().data();
-        const float first = values[0];
-        const bool isTile =
-            leaf->isDense() && first == std::nearbyint(first) &&
-            std::all_of(values, values + leaf->SIZE, [first](float v) { return v == first; });
-        if (isTile) grid.tree().addTile(1, origin, first, /*active=*/true);
+        const float first = leaf->getFirstValue();
+        if (first != std::nearbyint(first) || !isConstantLeaf(*leaf)) continue;
+        grid.tree().addTile(1, origin, first, /*active=*/true);
     }
 }
 
@@ -115,6 +131,10 @@ typename Grid::Ptr joinParts(const std::vector<openvdb::GridBase::Ptr>& parts,
     auto whole = Grid::create(first->background());
     static_cast<openvdb::MetaMap&>(*whole) = static_cast<const openvdb::MetaMap&>(*first);
     for (const char* name : {kShard, kOverlaps, kRefinements}) whole->removeMeta(name);
+    if ((*whole)[kSettings]) {
+        whole->removeMeta(kSettings);
+        whole->insertMeta(kSettings, openvdb::StringMetadata(wholeSettings(*first)));
+    }
     whole->setTransform(first->transform().copy());
     for (const auto& part : parts) addPart(*whole, *openvdb::gridPtrCast<Grid>(part), shared);
     return whole;
