@@ -1,5 +1,6 @@
 #include "compare/test_surfaces.h"
-#include "compare/triangle_tree.h"
+#include "mesh/triangle_tree.h"
+#include "source/test_meshes.h"
 
 #include <bandvox/compare/compare_surfaces.h>
 #include <bandvox/core/error.h>
@@ -123,7 +124,7 @@ TEST(CompareSurfaces, LargestDistanceInsideATriangle) {
 
 TEST(CompareSurfaces, AgreesWithLookingEverywhere) {
     for (const unsigned seed : {1U, 2U, 3U}) {
-        const Mesh a = soup(seed, 40), b = soup(seed + 100, 25);
+        const Mesh a = test::soup(seed, 40), b = test::soup(seed + 100, 25);
         const double tolerance = 1e-3;
         const SurfaceDifference found = compare(a, b, tolerance);
         expectBounds(found, tolerance);
@@ -151,7 +152,7 @@ TEST(CompareSurfaces, AgreesWithLookingEverywhere) {
 }
 
 TEST(CompareSurfaces, IdenticalSurfacesAreNoDistanceApart) {
-    for (const Mesh& mesh : {sphere(Vec3d(7, 8, 9), 2, 20), torus(2, 0.5, 40), soup(5, 30)}) {
+    for (const Mesh& mesh : {sphere(Vec3d(7, 8, 9), 2, 20), torus(2, 0.5, 40), test::soup(5, 30)}) {
         const SurfaceDifference found = compare(mesh, mesh);
         expectBounds(found, 1e-4);
         EXPECT_LT(found.hausdorff, 1e-12);

@@ -90,29 +90,6 @@ Mesh joined(const Mesh& a, const Mesh& b) {
     return mesh;
 }
 
-Mesh soup(unsigned seed, int triangles) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> place(0, 1);
-    Mesh mesh;
-    for (int i = 0; i < triangles; ++i) {
-        const Vec3d at(place(random), place(random), place(random));
-        for (int k = 0; k < 3; ++k) {
-            const Vec3d aside(place(random), place(random), place(random));
-            mesh.points.push_back(at + 0.3 * aside);
-        }
-        const auto first = static_cast<unsigned>(3 * i);
-        // Now and then a segment, or a point.
-        if (i % 11 == 5) {
-            mesh.triangles.emplace_back(first, first + 1, first);
-        } else if (i % 11 == 7) {
-            mesh.triangles.emplace_back(first, first, first);
-        } else {
-            mesh.triangles.emplace_back(first, first + 1, first + 2);
-        }
-    }
-    return mesh;
-}
-
 openvdb::FloatGrid::Ptr levelSet(const std::function<double(const Vec3d&)>& distance, double half,
                                  double voxel) {
     auto grid = openvdb::FloatGrid::create(static_cast<float>(half));

@@ -22,9 +22,6 @@ Mesh torus(double major, double minor, int points);
 /// Both in one.
 Mesh joined(const Mesh& a, const Mesh& b);
 
-/// Some triangles in the unit cube without any order, a few of them without area.
-Mesh soup(unsigned seed, int triangles);
-
 /// A level set on a lattice of voxels of a side: a signed distance, negative inside, known in
 /// [-half, half]³ of the world around the origin.
 openvdb::FloatGrid::Ptr levelSet(const std::function<double(const openvdb::Vec3d&)>& distance,

@@ -1,6 +1,6 @@
 #include "compare/farthest_point.h"
-#include "compare/triangle_tree.h"
 #include "core/words.h"
+#include "mesh/triangle_tree.h"
 #include "source/mesh_bounds.h"
 
 #include <bandvox/compare/compare_surfaces.h>

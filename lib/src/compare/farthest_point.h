@@ -1,6 +1,6 @@
 #pragma once
 
-#include "compare/triangle_tree.h"
+#include "mesh/triangle_tree.h"
 
 #include <bandvox/core/progress.h>
 

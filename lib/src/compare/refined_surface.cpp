@@ -1,6 +1,6 @@
 #include "compare/refined_surface.h"
 
-#include "compare/triangle_tree.h"
+#include "mesh/triangle_tree.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>

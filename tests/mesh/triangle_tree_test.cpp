@@ -1,6 +1,6 @@
-#include "compare/triangle_tree.h"
+#include "mesh/triangle_tree.h"
 
-#include "compare/test_surfaces.h"
+#include "source/test_meshes.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace bandvox::compare_test {
+namespace bandvox {
 namespace {
 
 using openvdb::Vec3d;
@@ -45,7 +45,7 @@ TEST(NearestOnTriangle, IsTheNearestOfManyPoints) {
 
 TEST(TriangleTree, FindsWhatLookingAtAllFinds) {
     for (const int triangles : {1, 3, 5, 200}) {
-        const Mesh mesh = soup(9, triangles);
+        const Mesh mesh = test::soup(9, triangles);
         const TriangleTree tree(mesh);
         std::mt19937 random(4);
         std::uniform_real_distribution<double> number(-0.5, 1.5);
@@ -64,6 +64,17 @@ TEST(TriangleTree, FindsWhatLookingAtAllFinds) {
             EXPECT_EQ(found.square, expected.square);
             EXPECT_EQ(found.triangle, first);
             EXPECT_EQ(found.point, expected.point);
+
+            const double distance = std::sqrt(expected.square);
+            const auto hint = static_cast<std::uint32_t>(random() % mesh.triangles.size());
+            const auto within = tree.nearestWithin(place, 1.01 * distance);
+            ASSERT_TRUE(within);
+            EXPECT_EQ(within->triangle, first);
+            const auto hinted = tree.nearestWithin(place, 10, hint);
+            ASSERT_TRUE(hinted);
+            EXPECT_EQ(hinted->triangle, first);
+            EXPECT_FALSE(tree.nearestWithin(place, 0.99 * distance));
+            EXPECT_FALSE(tree.nearestWithin(place, 0.99 * distance, hint));
         }
     }
 }
@@ -79,4 +90,4 @@ TEST(TriangleTree, OfEqualTrianglesItFindsTheFirst) {
 }
 
 }  // namespace
-}  // namespace bandvox::compare_test
+}  // namespace bandvox

@@ -1,4 +1,4 @@
-#include "compare/triangle_tree.h"
+#include "mesh/triangle_tree.h"
 
 #include <bandvox/core/memory.h>
 
@@ -103,19 +103,35 @@ void TriangleTree::build(std::uint32_t begin, std::uint32_t end) {
     build(middle, end);
 }
 
+void TriangleTree::look(const openvdb::Vec3d& place, std::uint32_t triangle,
+                        NearestOnMesh& found) const {
+    const NearestOnTriangle here = nearestOnTriangle(place, cornersOf(mMesh, triangle));
+    // Of equals the first, so that the hint does not matter.
+    if (here.square > found.square) return;
+    if (here.square == found.square && triangle >= found.triangle) return;
+    static_cast<NearestOnTriangle&>(found) = here;
+    found.triangle = triangle;
+}
+
 NearestOnMesh TriangleTree::nearest(const openvdb::Vec3d& place, std::uint32_t hint) const {
     NearestOnMesh found;
-    const auto look = [&](std::uint32_t triangle) {
-        const NearestOnTriangle here = nearestOnTriangle(place, cornersOf(mMesh, triangle));
-        // Of equals the first, so that the hint does not matter.
-        if (here.square > found.square) return;
-        if (here.square == found.square && triangle >= found.triangle) return;
-        static_cast<NearestOnTriangle&>(found) = here;
-        found.triangle = triangle;
-    };
-    found.triangle = std::numeric_limits<std::uint32_t>::max();
-    look(std::min(hint, static_cast<std::uint32_t>(mOrder.size() - 1)));
+    look(place, std::min(hint, static_cast<std::uint32_t>(mOrder.size() - 1)), found);
+    search(place, found);
+    return found;
+}
 
+std::optional<NearestOnMesh> TriangleTree::nearestWithin(const openvdb::Vec3d& place,
+                                                         double distance,
+                                                         std::optional<std::uint32_t> hint) const {
+    NearestOnMesh found;
+    found.square = distance * distance;
+    if (hint) look(place, *hint, found);
+    search(place, found);
+    if (found.triangle == NearestOnMesh().triangle) return std::nullopt;
+    return found;
+}
+
+void TriangleTree::search(const openvdb::Vec3d& place, NearestOnMesh& found) const {
     struct Pending {
         std::uint32_t node;
         double square;
@@ -128,7 +144,7 @@ NearestOnMesh TriangleTree::nearest(const openvdb::Vec3d& place, std::uint32_t h
         if (top.square > found.square) continue;
         const Node& node = mNodes[top.node];
         if (node.right == 0) {
-            for (std::uint32_t i = node.begin; i < node.end; ++i) look(mOrder[i]);
+            for (std::uint32_t i = node.begin; i < node.end; ++i) look(place, mOrder[i], found);
             continue;
         }
         Pending near{top.node + 1, squareTo(mNodes[top.node + 1].box, place)};
@@ -137,7 +153,6 @@ NearestOnMesh TriangleTree::nearest(const openvdb::Vec3d& place, std::uint32_t h
         pending[count++] = far;
         pending[count++] = near;
     }
-    return found;
 }
 
 }  // namespace bandvox

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace bandvox {
@@ -31,7 +32,7 @@ NearestOnTriangle nearestOnTriangle(const openvdb::Vec3d& place, const TriangleC
 
 /// The point of a mesh that is nearest to a place.
 struct NearestOnMesh : NearestOnTriangle {
-    std::uint32_t triangle = 0;
+    std::uint32_t triangle = std::numeric_limits<std::uint32_t>::max();
 };
 
 /// Finds nearest points of a mesh: a bounding volume hierarchy. Safe to use from many threads. The
@@ -45,6 +46,10 @@ class TriangleTree {
     /// triangle that may be near, for speed.
     NearestOnMesh nearest(const openvdb::Vec3d& place, std::uint32_t hint) const;
 
+    /// The same if it is no farther than `distance`. Without a hint the search takes longer.
+    std::optional<NearestOnMesh> nearestWithin(const openvdb::Vec3d& place, double distance,
+                                               std::optional<std::uint32_t> hint = {}) const;
+
     const Mesh& mesh() const { return mMesh; }
 
   private:
@@ -55,6 +60,8 @@ class TriangleTree {
     };
 
     void build(std::uint32_t begin, std::uint32_t end);
+    void look(const openvdb::Vec3d& place, std::uint32_t triangle, NearestOnMesh& found) const;
+    void search(const openvdb::Vec3d& place, NearestOnMesh& found) const;
 
     const Mesh& mMesh;
     std::vector<std::uint32_t> mOrder;
