@@ -5,9 +5,11 @@
 
 #include "color_grid.h"
 #include "command_run.h"
+#include "convert_to_array.h"
 #include "convert_volume.h"
 #include "mesh_output.h"
 #include "solid_input.h"
+#include "stack_input.h"
 #include "standard_streams.h"
 #include "volume_options.h"
 #include "words.h"
@@ -25,6 +27,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -54,7 +57,8 @@ struct ConvertRequest {
     std::optional<int> oversample;
     std::optional<double> samplingTolerance;  ///< if it was asked for
     VdbWriteOptions write;
-    std::optional<MeshOutput> mesh;  ///< instead of the density
+    std::optional<MeshOutput> mesh;      ///< instead of the density
+    std::unique_ptr<ArrayOutput> array;  ///< the same
 };
 
 void readRoute(const CommandLine& line, ConvertRequest& request) {
@@ -95,7 +99,9 @@ ConvertRequest parseConvert(const CommandLine& line) {
     ConvertRequest request;
     request.input = line.positional(0);
     const std::string output = line.requiredText("output");
-    request.mesh = readVdbOrMeshOutput(line);
+    request.array = ArrayOutput::read(line);
+    if (!request.array) request.mesh = readVdbOrMeshOutput(line);
+    readStackRequest(line, request.input);  // refuses
     request.output = outputPath(output);
 
     for (const char* name : {"grid", "background", "factor", "onto", "no-filter"}) {
@@ -125,7 +131,7 @@ ConvertRequest parseConvert(const CommandLine& line) {
     }
     request.levels = readDetailLevels(line);
     request.write.half = line.has("half");
-    request.write.compression = readCompression(line);
+    if (!request.array) request.write.compression = readCompression(line);
     return request;
 }
 
@@ -311,7 +317,8 @@ void convertSolid(const CommandLine& line) {
     const ConvertRequest request = parseConvert(line);
     requireMeshOrShape("convert", request.input);
     CommandRun run(line);
-    AtomicFile output(request.output);
+    std::optional<AtomicFile> output;
+    if (!request.array) output.emplace(request.output);
 
     ConvertedGrids grids = isShape(request.input) ? ConvertedGrids{shapeToDensity(run, request), {}}
                                                   : meshToGrids(run, request);
@@ -327,16 +334,17 @@ void convertSolid(const CommandLine& line) {
     if (grids.color) sayColors(run, *grids.color);
     run.warn(result.warnings, ErrorKind::Result);
 
+    if (request.array) return request.array->write(run, *result.grid);
     if (request.mesh) {
         const auto colors = grids.color ? grids.color->grid : nullptr;
-        return writeMeshOutput(run, output, *request.mesh, result.grid, colors);
+        return writeMeshOutput(run, *output, *request.mesh, result.grid, colors);
     }
     openvdb::GridCPtrVec written{result.grid};
     if (request.levels > 0) {
         for (const auto& level : makeLevels(run, request, result.grid)) written.push_back(level);
     }
     if (grids.color) written.push_back(grids.color->grid);
-    run.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, written, request.write); });
+    run.writeOutput(*output, [&](AtomicFile& file) { writeVdb(file, written, request.write); });
 }
 
 }  // namespace bandvox::app
