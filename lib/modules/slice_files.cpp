@@ -91,10 +91,14 @@ class OpenImageIoSlices final : public SliceFile {
     void read(int page, int firstChannel, int channels, std::vector<char>& values) override {
         values.resize(static_cast<std::size_t>(mInfo.width) * mInfo.height * channels *
                       mSpec.format.size());
+        mInput->geterror();
         if (!mInput->read_image(page, 0, firstChannel, firstChannel + channels, mSpec.format,
-                                values.data())) {
+                                values.data()) ||
+            mInput->has_error()) {
+            // Of strips that are cut off there may only be a word, and one for each.
+            const std::string why = mInput->geterror();
             throw Error(ErrorKind::Input,
-                        "it cannot be read to its end (" + mInput->geterror() + ")");
+                        "it cannot be read to its end (" + why.substr(0, why.find('\n')) + ")");
         }
     }
 
@@ -136,7 +140,7 @@ class OpenImageIoSlices final : public SliceFile {
             }
             ++pages;
         }
-        // That there is no other page is no failure.
+        // That there is no other page is no failure, whatever is said of it.
         mInput->geterror();
         return pages;
     }
@@ -172,6 +176,9 @@ class OpenImageIoOutput final : public SliceOutput {
             mSpec.attribute("XResolution", static_cast<float>(info.resolution[0]));
             mSpec.attribute("YResolution", static_cast<float>(info.resolution[1]));
             mSpec.attribute("ResolutionUnit", "none");
+            // Otherwise both are written as the first.
+            mSpec.attribute("PixelAspectRatio",
+                            static_cast<float>(info.resolution[1] / info.resolution[0]));
         }
     }
 

@@ -5,6 +5,7 @@
 #include "source/array_header.h"
 #include "source/channel_choice.h"
 #include "source/image_calibration.h"
+#include "source/tiff_pages.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>
@@ -31,12 +32,19 @@ constexpr double kMostPackedImage = 65536;
 std::unique_ptr<SliceFile> openSlices(const fs::path& path) {
     std::error_code ignored;
     if (!fs::exists(path, ignored)) failArray(path, "there is no such file");
+    const auto pages = countTiffPages(path);
+    std::unique_ptr<SliceFile> file;
     try {
-        return imageLibrary().openSlices(path);
+        file = imageLibrary().openSlices(path);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::Input) throw;
         failArray(path, error.what());
     }
+    if (pages && *pages != file->info().pages) {
+        failArray(path, "it is damaged: of its " + std::to_string(*pages) + " pages " +
+                            std::to_string(file->info().pages) + " can be read");
+    }
+    return file;
 }
 
 std::string kindInWords(const SliceFileInfo& info) {
@@ -183,11 +191,13 @@ void calibrate(const fs::path& path, const SliceFileInfo& first, ArrayInfo& info
                             std::to_string(calibration->frames) +
                             " frames, one page each; expected one of both");
     }
-    if (first.pages == 1 && calibration->images > 1 && info.size.z() == 1) {
+    const bool isAlone = info.size.z() == first.pages;
+    if (isAlone && calibration->images > first.pages) {
         failArray(path, "its description says that it holds " +
                             std::to_string(calibration->images) +
-                            " images, and it has one page; ImageJ writes more than 4 GB like "
-                            "that, which is not read. Expected a file with pages, or a sequence");
+                            " images, and it has " + counted(first.pages, "page", "pages") +
+                            "; expected as many. (More than 4 GB are written like that by ImageJ "
+                            "itself, and not read: save them as a sequence.)");
     }
     if (!calibration->hasSpacing) return;
     info.toWorld.preScale(calibration->spacing);
