@@ -157,8 +157,9 @@ class OpenImageIo final : public ImageLibrary {
         return {failure, proxy.failure()};
     }
 
-    std::unique_ptr<SliceFile> openSlices(const std::filesystem::path& path) const override {
-        return openSliceFile(path);
+    std::unique_ptr<SliceFile> openSlices(const std::filesystem::path& path,
+                                          int threads) const override {
+        return openSliceFile(path, threads);
     }
 
     std::unique_ptr<SliceOutput> createSlices(const std::filesystem::path& path,

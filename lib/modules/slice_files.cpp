@@ -18,6 +18,9 @@ namespace {
 // No file has as many pages.
 constexpr int kMostPages = 1 << 20;
 
+// Of zlib: more takes far longer, and makes scans, which are mostly noise, hardly smaller.
+constexpr int kPackingLevel = 3;
+
 std::string typeName(const OIIO::TypeDesc& type) {
     switch (type.basetype) {
         case OIIO::TypeDesc::UINT8:
@@ -64,15 +67,14 @@ OIIO::ImageSpec asStored() {
 
 class OpenImageIoSlices final : public SliceFile {
   public:
-    explicit OpenImageIoSlices(const std::filesystem::path& path) {
+    OpenImageIoSlices(const std::filesystem::path& path, int threads) {
         const OIIO::ImageSpec config = asStored();
         mInput = OIIO::ImageInput::open(path.string(), &config);
         if (!mInput) {
             throw Error(ErrorKind::Input,
                         "it is no image that can be read (" + OIIO::geterror() + ")");
         }
-        // What runs beside each other is chosen by the caller.
-        mInput->threads(1);
+        mInput->threads(threads);
         mSpec = mInput->spec();
         requireFlat(mSpec);
         mInfo.width = mSpec.width;
@@ -163,10 +165,12 @@ class OpenImageIoOutput final : public SliceOutput {
           mSpec(info.width, info.height, 1, typeOfName(info.type)),
           mOutput(OIIO::ImageOutput::create("slices" + info.extension)) {
         if (!mOutput) throw Error(ErrorKind::Runtime, OIIO::geterror());
-        mOutput->threads(1);
+        mOutput->threads(info.threads);
         mSpec.channelnames = {"Y"};
         // What is written are numbers, not colours.
         mSpec.attribute("oiio:ColorSpace", "Linear");
+        mSpec.attribute("png:compressionLevel", kPackingLevel);
+        mSpec.attribute("tiff:zipquality", kPackingLevel);
         if (info.extension != ".png") {
             mSpec.attribute("compression", info.compress ? "zip" : "none");
         }
@@ -207,8 +211,8 @@ class OpenImageIoOutput final : public SliceOutput {
 
 }  // namespace
 
-std::unique_ptr<SliceFile> openSliceFile(const std::filesystem::path& path) {
-    return std::make_unique<OpenImageIoSlices>(path);
+std::unique_ptr<SliceFile> openSliceFile(const std::filesystem::path& path, int threads) {
+    return std::make_unique<OpenImageIoSlices>(path, threads);
 }
 
 std::unique_ptr<SliceOutput> createSliceFile(const std::filesystem::path& path,

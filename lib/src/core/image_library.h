@@ -73,10 +73,12 @@ class ImageLibrary {
     /// Writes 8-bit sRGB with alpha.
     virtual WriteFailure writePng(std::ostream& stream, const PngRows& image) const = 0;
 
-    /// Opens the pages of a file for their values as they are stored. Throws
+    /// Opens the pages of a file for their values as they are stored, which so many threads may
+    /// unpack. Throws
     /// Error(ErrorKind::Input), which does not name the file, if it cannot be read or if its pages
     /// are not alike.
-    virtual std::unique_ptr<SliceFile> openSlices(const std::filesystem::path& path) const = 0;
+    virtual std::unique_ptr<SliceFile> openSlices(const std::filesystem::path& path,
+                                                  int threads) const = 0;
 
     /// Creates a file for pages, replacing what is there. Throws Error(ErrorKind::Runtime), which
     /// does not name the file.

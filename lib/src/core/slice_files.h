@@ -45,6 +45,7 @@ struct SliceOutputInfo {
     bool large = false;                  ///< there will be more than a TIFF file commonly holds
     std::string description;             ///< free text
     std::array<double, 2> resolution{};  ///< pixels per unit along x and y; 0: not said
+    int threads = 1;                     ///< that may pack parts of a page
 };
 
 /// A file that images are written to, one after another. Throws Error(ErrorKind::Runtime), which

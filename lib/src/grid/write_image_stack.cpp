@@ -173,6 +173,7 @@ WrittenVoxels writeImagePages(AtomicFile& file, const openvdb::FloatGrid& grid,
     VoxelSlices slices(grid, options.voxels, {0, 1, 2});
     SliceOutputInfo info = outputInfo(file.target(), slices, options);
     info.large = double(slices.bytesPerSlice()) * slices.slices() > kLargestTiff;
+    info.threads = threadCount();
     calibrateOutput(grid, slices.slices(), info);
     file.open().close();
     const ProgressStage stage(progress, "writing", slices.slices());

@@ -29,13 +29,13 @@ constexpr std::size_t kTogether = 8;
 // No image is packed more closely than this.
 constexpr double kMostPackedImage = 65536;
 
-std::unique_ptr<SliceFile> openSlices(const fs::path& path) {
+std::unique_ptr<SliceFile> openSlices(const fs::path& path, int threads = 1) {
     std::error_code ignored;
     if (!fs::exists(path, ignored)) failArray(path, "there is no such file");
     const auto pages = countTiffPages(path);
     std::unique_ptr<SliceFile> file;
     try {
-        file = imageLibrary().openSlices(path);
+        file = imageLibrary().openSlices(path, threads);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::Input) throw;
         failArray(path, error.what());
@@ -100,7 +100,7 @@ class ImageStack final : public ArraySource {
                 failArray(info().name, "there are no more slices in it");
             }
             if (mFiles.size() == 1) {
-                if (!mPages) mPages = openSlices(mFiles.front());
+                if (!mPages) mPages = openSlices(mFiles.front(), threadCount());
                 for (std::size_t i = 0; i < slices; ++i) {
                     readPage(*mPages, mFiles.front(), static_cast<int>(mNext + i),
                              values.subspan(i * perSlice, perSlice));
