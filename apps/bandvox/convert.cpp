@@ -81,7 +81,8 @@ const CommandTable& convertTable() {
             "nothing aliases; the error is measured and stored in the grid. Holes of the mesh are "
             "capped, and said so. The grids of a .vdb file are copied, or filtered for another "
             "lattice: of a density, what its source would have become there. An output that is a "
-            "mesh is the surface of the density, or of a .vdb file's level set, closed. Arrays, stacks "
+            "mesh is the surface of the density, or of a .vdb file's level set, closed. Arrays, "
+            "stacks "
             "of images and DICOM series come in as grids, and grids go out as arrays and stacks.",
             {{"INPUT",
               "A mesh (.obj, .ply, .stl, .gltf, ...), a .vdb file (stdin.vdb is the standard "

@@ -74,6 +74,30 @@ bool isAlongAxes(const openvdb::FloatGrid& grid) {
     return true;
 }
 
+// Slices may not be written over those that are read, nor among them.
+void requireOtherFiles(const std::string& input, const fs::path& output) {
+    std::error_code ignored;
+    const fs::path first = sliceFile(output, 0);
+    const fs::path folder = first.has_parent_path() ? first.parent_path() : fs::path(".");
+    const bool isThere = fs::is_directory(input, ignored)
+                             ? fs::equivalent(input, folder, ignored)
+                             : isImagePattern(input) && fs::weakly_canonical(sliceFile(input, 0)) ==
+                                                            fs::weakly_canonical(first);
+    if (!isThere) return;
+    throw Error(ErrorKind::Usage, "option --output is '" + output.string() +
+                                      "', where the slices of INPUT are; expected another place");
+}
+
+// A file of values is replaced with its header only: it could be that of another one.
+void requireOwnValues(const fs::path& header, const fs::path& values) {
+    std::error_code ignored;
+    if (!fs::exists(values, ignored) || fs::exists(header, ignored)) return;
+    throw Error(ErrorKind::Usage, "the values of '" + header.string() + "' would replace '" +
+                                      values.string() +
+                                      "', which may be those of another file; expected another "
+                                      "name for --output");
+}
+
 }  // namespace
 
 std::vector<OptionEntry> arrayOutputEntries() {
@@ -124,17 +148,17 @@ ArrayOutput::ArrayOutput(const CommandLine& line, fs::path path, Kind kind)
     mVoxels.box = readBox(line);
     if (isImages()) requireImageType(mPath, mVoxels.type);
     // 0: as is usual, 1: zip, 2: none.
-    const std::size_t packing = line.has("compression") ? 1 + line.choice("compression",
-                                                                          {"zip", "none"}, 0)
-                                                        : 0;
+    const std::size_t packing =
+        line.has("compression") ? 1 + line.choice("compression", {"zip", "none"}, 0) : 0;
     if ((packing == 1 && mKind == Kind::Npy) || (packing == 2 && isPng)) {
-        throw Error(ErrorKind::Usage, std::string("--compression has no meaning with ") +
-                                          (isPng ? ".png files, which always are"
-                                                 : ".npy files, which never are"));
+        throw Error(ErrorKind::Usage,
+                    std::string("--compression has no meaning with ") +
+                        (isPng ? ".png files, which always are" : ".npy files, which never are"));
     }
     mCompress = isImages() ? packing != 2 : packing == 1;
     // What cannot be written is to be known before the work.
     if (mKind == Kind::Pattern) {
+        requireOtherFiles(mInput, mPath);
         const AtomicFile first(sliceFile(mPath, 0));
         return;
     }
@@ -143,19 +167,23 @@ ArrayOutput::ArrayOutput(const CommandLine& line, fs::path path, Kind kind)
         fs::path values = mPath;
         // As these formats usually call it.
         values.replace_extension(mCompress ? (mKind == Kind::Nrrd ? ".raw.gz" : ".zraw") : ".raw");
+        requireOwnValues(mPath, values);
         mValues = std::make_unique<AtomicFile>(values);
     }
 }
 
+void ArrayOutput::writePattern(CommandRun& run, const openvdb::FloatGrid& grid) {
+    // A warning that is a failure has to come before the first file.
+    say(run, grid, examineVoxels(grid, mVoxels, run.progress()));
+    const WrittenVoxels written =
+        writeImageStack(mPath, grid, {mVoxels, mCompress}, run.progress());
+    run.say("wrote    " + sliceFile(mPath, 0).string() + " to " +
+            sliceFile(mPath, written.box.dim().z() - 1).filename().string() + ", after " +
+            formatNumber(run.seconds(), 3) + " s");
+    run.finish();
+}
+
 WrittenVoxels ArrayOutput::writeFiles(CommandRun& run, const openvdb::FloatGrid& grid) {
-    WrittenVoxels written;
-    if (mKind == Kind::Pattern) {
-        written = writeImageStack(mPath, grid, {mVoxels, mCompress}, run.progress());
-        run.say("wrote    " + sliceFile(mPath, 0).string() + " to " +
-                sliceFile(mPath, written.box.dim().z() - 1).filename().string() + ", after " +
-                formatNumber(run.seconds(), 3) + " s");
-        return written;
-    }
     if (mKind == Kind::Pages) {
         return writeImagePages(*mFile, grid, {mVoxels, mCompress}, run.progress());
     }
@@ -201,10 +229,7 @@ void ArrayOutput::write(CommandRun& run, const openvdb::FloatGrid& grid) {
     const bool isWhole = mVoxels.type == VoxelType::UInt8 || mVoxels.type == VoxelType::UInt16 ||
                          mVoxels.type == VoxelType::Int16;
     if (isWhole && !mVoxels.range && isDensityOfSolid(grid)) mVoxels.range = kDensityRange;
-    if (mKind == Kind::Pattern) {
-        say(run, grid, writeFiles(run, grid));
-        return run.finish();
-    }
+    if (mKind == Kind::Pattern) return writePattern(run, grid);
     // A header that stands alone comes last: where it is, its values are.
     run.writeOutput(*mFile, [&](AtomicFile& /*file*/) {
         const WrittenVoxels written = writeFiles(run, grid);

@@ -36,6 +36,7 @@ class ArrayOutput {
     ArrayOutput(const CommandLine& line, std::filesystem::path path, Kind kind);
     static std::optional<Kind> kindOf(const std::string& name);
     bool isImages() const { return mKind == Kind::Pages || mKind == Kind::Pattern; }
+    void writePattern(CommandRun& run, const openvdb::FloatGrid& grid);
     WrittenVoxels writeFiles(CommandRun& run, const openvdb::FloatGrid& grid);
     void say(CommandRun& run, const openvdb::FloatGrid& grid, const WrittenVoxels& written) const;
 

@@ -51,8 +51,8 @@ StackRequest readStackRequest(const CommandLine& line, const std::string& input)
         for (const char* name : kStackOptions) {
             if (!line.has(name)) continue;
             throw Error(ErrorKind::Usage, std::string("option --") + name +
-                                              " is for arrays and stacks of images, and '" +
-                                              input + "' is none");
+                                              " is for arrays and stacks of images, and '" + input +
+                                              "' is none");
         }
     }
     StackRequest request;

@@ -45,8 +45,9 @@ std::filesystem::path outputPath(const std::string& name) {
     }
     if (isatty(STDOUT_FILENO)) {
         throw Error(ErrorKind::Usage,
-                    name + " is the standard output, and that is a terminal; expected a file or "
-                    "a pipe");
+                    name +
+                        " is the standard output, and that is a terminal; expected a file or "
+                        "a pipe");
     }
     return "/dev/stdout";
 }

@@ -1,5 +1,6 @@
 // DICOM files, by DCMTK. PS3.3 of the standard says what the attributes mean.
 #include "core/dicom_files.h"
+
 #include "image_modules.h"
 
 #include <bandvox/core/error.h>
@@ -75,8 +76,7 @@ std::optional<std::array<double, Count>> numbersOf(DcmItem& item, const DcmTagKe
     }
     if (!good) {
         failDicom(std::string("its ") + name + " is '" + textOf(item, tag).substr(0, 100) +
-                  "'; expected " + std::to_string(Count) +
-                  (Count == 1 ? " number" : " numbers"));
+                  "'; expected " + std::to_string(Count) + (Count == 1 ? " number" : " numbers"));
     }
     return numbers;
 }
@@ -145,9 +145,9 @@ class DcmtkFile final : public DicomFile {
         values.resize(std::max<std::size_t>(expected, size + (size & 1U)));
         Uint32 fragment = 0;
         OFString color;
-        const OFCondition status = pixels->getUncompressedFrame(
-            &data, static_cast<Uint32>(frame), fragment, values.data(),
-            static_cast<Uint32>(values.size()), color);
+        const OFCondition status =
+            pixels->getUncompressedFrame(&data, static_cast<Uint32>(frame), fragment, values.data(),
+                                         static_cast<Uint32>(values.size()), color);
         if (status.bad()) {
             failDicom("its frame " + std::to_string(frame) + " cannot be read (" + status.text() +
                       ")");
@@ -200,9 +200,9 @@ class DcmtkFile final : public DicomFile {
         DicomFrame common;
         readFrame(data, common);
         readFrame(within(data, DCM_SharedFunctionalGroupsSequence), common);
-        for (const auto& [tag, name] : {std::pair(DCM_SliceThickness, "SliceThickness"),
-                                        std::pair(DCM_SpacingBetweenSlices,
-                                                  "SpacingBetweenSlices")}) {
+        for (const auto& [tag, name] :
+             {std::pair(DCM_SliceThickness, "SliceThickness"),
+              std::pair(DCM_SpacingBetweenSlices, "SpacingBetweenSlices")}) {
             for (DcmItem* item : {&data, &within(within(data, DCM_SharedFunctionalGroupsSequence),
                                                  DCM_PixelMeasuresSequence)}) {
                 if (const auto step = numbersOf<1>(*item, tag, name)) mInfo.sliceStep = (*step)[0];
@@ -229,8 +229,8 @@ class DcmtkFile final : public DicomFile {
         const DcmXfer transfer(mFile.getDataset()->getOriginalXfer());
         std::error_code error;
         const auto length = static_cast<double>(std::filesystem::file_size(path, error));
-        const double claimed = static_cast<double>(frameBytes()) *
-                               static_cast<double>(mInfo.frames.size());
+        const double claimed =
+            static_cast<double>(frameBytes()) * static_cast<double>(mInfo.frames.size());
         // Nothing is packed more closely than all of one value.
         constexpr double kMostPacked = 65536;
         const bool isPacked = transfer.isEncapsulated();

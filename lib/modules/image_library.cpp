@@ -1,5 +1,6 @@
 // Image files by OpenImageIO: a module beside the library, or a part of it where that is static.
 #include "core/image_library.h"
+
 #include "image_modules.h"
 
 #include <bandvox/core/error.h>

@@ -1,5 +1,6 @@
 // Images as they are stored, by OpenImageIO.
 #include "core/slice_files.h"
+
 #include "image_modules.h"
 
 #include <bandvox/core/error.h>
@@ -111,9 +112,9 @@ class OpenImageIoSlices final : public SliceFile {
             return;
         }
         throw Error(ErrorKind::Input,
-                    "it holds " + std::to_string(spec.width) + " x " +
-                        std::to_string(spec.height) + " x " + std::to_string(spec.depth) +
-                        " pixels of " + std::to_string(spec.nchannels) + " channels" +
+                    "it holds " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
+                        " x " + std::to_string(spec.depth) + " pixels of " +
+                        std::to_string(spec.nchannels) + " channels" +
                         (spec.deep ? ", several to a pixel" : "") +
                         (spec.channelformats.empty() ? "" : " of different types") +
                         "; expected flat images of one type");
@@ -137,8 +138,8 @@ class OpenImageIoSlices final : public SliceFile {
             if (spec.width != mSpec.width || spec.height != mSpec.height ||
                 spec.nchannels != mSpec.nchannels || spec.format != mSpec.format) {
                 throw Error(ErrorKind::Input, "page " + std::to_string(pages) + " holds " +
-                                                  inWords(spec) + ", and page 0 " +
-                                                  inWords(mSpec) + "; expected the same");
+                                                  inWords(spec) + ", and page 0 " + inWords(mSpec) +
+                                                  "; expected the same");
             }
             ++pages;
         }
@@ -188,9 +189,9 @@ class OpenImageIoOutput final : public SliceOutput {
 
     void write(const char* values) override {
         const bool isFirst = mPages++ == 0;
-        if (!mOutput->open(mPath, mSpec,
-                           isFirst ? OIIO::ImageOutput::Create
-                                   : OIIO::ImageOutput::AppendSubimage) ||
+        if (!mOutput->open(
+                mPath, mSpec,
+                isFirst ? OIIO::ImageOutput::Create : OIIO::ImageOutput::AppendSubimage) ||
             !mOutput->write_image(mSpec.format, values)) {
             fail();
         }

@@ -75,7 +75,7 @@ class ConvertStack : public testing::Test {
 TEST_F(ConvertStack, GoesRoundByAllFormats) {
     expectDone({"a.npy", "-o", "a.vdb"});
     expectSameAsSample("a.vdb");
-    const Words outputs{"a.nrrd", "a.nhdr", "a.mha", "a.mhd", "s.###.tif", "s%04d.png", "a.tif"};
+    const Words outputs{"a.nrrd", "a.nhdr", "a.mha", "m.mhd", "s.###.tif", "s%04d.png", "a.tif"};
     for (const std::string& output : outputs) {
         expectDone({"a.vdb", "-o", output, "--type", "uint16"});
         expectSameAsSample(output);
@@ -108,15 +108,15 @@ TEST_F(ConvertStack, ReadsWhatNumPyReads) {
     if (runProgram({"/usr/bin/python3", "-c", "import numpy"}).status != 0) {
         GTEST_SKIP() << "there is no numpy";
     }
-    const RunResult result = runProgram(
-        {"/usr/bin/python3", "-c",
-         "import numpy as np\n"
-         "a, f, h = (np.load(n + '.npy') for n in 'afh')\n"
-         "head, values = open('n.nrrd', 'rb').read().split(b'\\n\\n', 1)\n"
-         "n = np.frombuffer(values, '<f8').reshape(a.shape, order='F')\n"
-         "print(f.dtype, (f == a).all(), h.dtype, h.shape,\n"
-         "      (h == a[2:10, 1:9, 3:10].astype('f2')).all(), (n == a).all())\n"},
-        {.folder = mFolder.path()});
+    const RunResult result =
+        runProgram({"/usr/bin/python3", "-c",
+                    "import numpy as np\n"
+                    "a, f, h = (np.load(n + '.npy') for n in 'afh')\n"
+                    "head, values = open('n.nrrd', 'rb').read().split(b'\\n\\n', 1)\n"
+                    "n = np.frombuffer(values, '<f8').reshape(a.shape, order='F')\n"
+                    "print(f.dtype, (f == a).all(), h.dtype, h.shape,\n"
+                    "      (h == a[2:10, 1:9, 3:10].astype('f2')).all(), (n == a).all())\n"},
+                   {.folder = mFolder.path()});
     EXPECT_EQ(result.out, "float32 True float16 (8, 8, 7) True True\n") << result.err;
     const std::string head = readText(mFolder / "n.nrrd").substr(0, 400);
     EXPECT_NE(head.find("space directions: (0.5,0,0) (0,0.25,0) (0,0,2)\n"), std::string::npos);
@@ -162,12 +162,14 @@ TEST_F(ConvertStack, WritesDensitiesOfSolids) {
     }
     expectDone({"shape:cube", "-o", "cube.vdb", "-r", "20"});
     expectDone({"cube.vdb", "-o", "cube.npy", "--type", "uint8", "--range", "0,0.5"});
-    const RunResult clipped = convert({"cube.vdb", "-o", "cube.npy", "--type", "uint8", "--range",
-                                       "0,0.5"});
+    const RunResult clipped =
+        convert({"cube.vdb", "-o", "cube.npy", "--type", "uint8", "--range", "0,0.5"});
     EXPECT_NE(clipped.err.find("clipped"), std::string::npos) << clipped.err;
-    expectFailure({"cube.vdb", "-o", "no.npy", "--type", "uint8", "--range", "0,0.5", "--strict"}, 4,
-                  {"--strict"});
+    expectFailure({"cube.vdb", "-o", "no.npy", "--type", "uint8", "--range", "0,0.5", "--strict"},
+                  4, {"--strict"});
+    expectFailure({"cube.vdb", "-o", "no.#.png", "--range", "0,0.5", "--strict"}, 4, {"--strict"});
     EXPECT_FALSE(std::filesystem::exists(mFolder / "no.npy"));
+    EXPECT_FALSE(std::filesystem::exists(mFolder / "no.0.png"));
 }
 
 TEST_F(ConvertStack, SaysWhatRoundingLoses) {
@@ -187,13 +189,23 @@ TEST_F(ConvertStack, WritesToStreams) {
     expectDone({"a.npy", "-o", "a.vdb"});
     for (const std::string extension : {".npy", ".nrrd"}) {
         writeText(mFolder / ("out" + extension), "");
-        const RunResult result =
-            runBandvox({"convert", "a.vdb", "-o", "stdout" + extension, "--type", "uint16"},
-                       {.folder = mFolder.path(),
-                        .standardOutput = (mFolder / ("out" + extension)).string()});
+        const RunResult result = runBandvox(
+            {"convert", "a.vdb", "-o", "stdout" + extension, "--type", "uint16"},
+            {.folder = mFolder.path(), .standardOutput = (mFolder / ("out" + extension)).string()});
         EXPECT_EQ(result.status, 0) << result.err;
         expectSameAsSample("out" + extension);
     }
+}
+
+TEST_F(ConvertStack, SparesWhatItReads) {
+    expectDone({"a.npy", "-o", "a.nhdr", "--type", "uint16"});
+    expectFailure({"a.nhdr", "-o", "a.mhd"}, 2, {"a.raw", "another file"});
+    expectSameAsSample("a.nhdr");
+    std::filesystem::create_directory(mFolder / "scan");
+    expectDone({"a.npy", "-o", "scan/x.##.png"});
+    expectFailure({"scan", "-o", "scan/y.##.png"}, 2, {"where the slices of INPUT are"});
+    expectFailure({"scan/x.##.png", "-o", "scan/x.%02d.png"}, 2, {"INPUT"});
+    expectSameAsSample("scan");
 }
 
 TEST_F(ConvertStack, RefusesWhatDoesNotGoTogether) {

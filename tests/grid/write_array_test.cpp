@@ -25,10 +25,10 @@ using openvdb::Vec3d;
 
 // Numbers without a pattern, some of them the background, whole ones if `whole`.
 float valueAt(const Coord& at, bool whole) {
-    const unsigned mixed = (static_cast<unsigned>(at.x()) * 73856093U ^
-                            static_cast<unsigned>(at.y()) * 19349663U ^
-                            static_cast<unsigned>(at.z()) * 83492791U) %
-                           1000U;
+    const unsigned mixed =
+        (static_cast<unsigned>(at.x()) * 73856093U ^ static_cast<unsigned>(at.y()) * 19349663U ^
+         static_cast<unsigned>(at.z()) * 83492791U) %
+        1000U;
     if (mixed < 300) return 0;
     return whole ? static_cast<float>(mixed % 256) : static_cast<float>(mixed) * 0.00137F - 0.4F;
 }
@@ -87,9 +87,9 @@ class WriteArray : public testing::Test {
         EXPECT_EQ(arrayBox(*read), CoordBBox(Coord(0), box.dim().offsetBy(-1)));
         if (!hasTransform) return;
         for (const Vec3d& at : {Vec3d(0.0), Vec3d(7, 0, 0), Vec3d(0, 9, 0), Vec3d(0, 0, 20)}) {
-            EXPECT_LT((read->indexToWorld(at) - grid.indexToWorld(at + box.min().asVec3d()))
-                          .length(),
-                      1e-9);
+            EXPECT_LT(
+                (read->indexToWorld(at) - grid.indexToWorld(at + box.min().asVec3d())).length(),
+                1e-9);
         }
     }
 
@@ -119,6 +119,10 @@ TEST_F(WriteArray, ComesBackBitForBit) {
     EXPECT_EQ(written.clipped, 0);
     EXPECT_EQ(written.rounded, 0);
     expectGrid(mFolder / "a.npy", *grid, box, false);
+    const WrittenVoxels examined = examineVoxels(*grid);
+    EXPECT_EQ(examined.box, box);
+    EXPECT_EQ(examined.minimum, written.minimum);
+    EXPECT_EQ(examined.maximum, written.maximum);
     write(mFolder / "a.nrrd", ArrayFormat::Nrrd, *grid);
     expectGrid(mFolder / "a.nrrd", *grid, box);
     write(mFolder / "a.mha", ArrayFormat::MetaImage, *grid);
@@ -143,8 +147,8 @@ TEST_F(WriteArray, ComesBackBitForBit) {
 TEST_F(WriteArray, KeepsValuesBesideTheHeader) {
     const auto grid = makeGrid(true);
     for (const bool compress : {false, true}) {
-        for (const auto& [name, format] : {std::pair("h.nhdr", ArrayFormat::Nrrd),
-                                           std::pair("h.mhd", ArrayFormat::MetaImage)}) {
+        for (const auto& [name, format] :
+             {std::pair("h.nhdr", ArrayFormat::Nrrd), std::pair("h.mhd", ArrayFormat::MetaImage)}) {
             AtomicFile header(mFolder / name), values(mFolder / "h.raw");
             ArrayWriteOptions options;
             options.compress = compress;
@@ -194,8 +198,7 @@ TEST_F(WriteArray, MapsARangeAndCountsWhatIsClipped) {
     const WrittenVoxels dense = write(mFolder / "r.npy", ArrayFormat::Npy, *grid, options);
     EXPECT_EQ(dense.clipped, 3) << "ringing within 0.001 is none";
     EXPECT_EQ(dense.rounded, 0) << "that is what a range asks for";
-    EXPECT_EQ(stored(dense),
-              (std::vector<float>{0, 0, 0, 16384, 32768, 65535, 65535, 65535, 0}));
+    EXPECT_EQ(stored(dense), (std::vector<float>{0, 0, 0, 16384, 32768, 65535, 65535, 65535, 0}));
     options.voxels.type = VoxelType::Int16;
     options.voxels.range = {-1.0, 1.0};
     const WrittenVoxels centred = write(mFolder / "r.npy", ArrayFormat::Npy, *grid, options);

@@ -21,8 +21,8 @@ openvdb::FloatGrid::Ptr makeStackGrid(int largest, float factor = 1) {
     auto grid = openvdb::FloatGrid::create(0.0F);
     auto to = grid->getAccessor();
     for (auto at = CoordBBox(-4, 2, -7, 16, 14, 11).begin(); at; ++at) {
-        const int value = ((*at).x() * 7919 + (*at).y() * 10473 + (*at).z() * 131 + 100000) %
-                          (largest + 1);
+        const int value =
+            ((*at).x() * 7919 + (*at).y() * 10473 + (*at).z() * 131 + 100000) % (largest + 1);
         if (value % 3 != 0) to.setValue(*at, factor * static_cast<float>(value));
     }
     const CoordBBox box(-5, 2, -8, 16, 14, 11);
@@ -82,18 +82,18 @@ TEST_F(WriteImageStack, ComesBackBitForBit) {
         int largest;
         float factor;
     };
-    for (const Case& one : {Case{"a.###.png", VoxelType::UInt8, 255, 1},
-                            Case{"b%03d.png", VoxelType::UInt16, 65535, 1},
-                            Case{"c.###.tif", VoxelType::UInt8, 255, 1},
-                            Case{"d.###.tif", VoxelType::UInt16, 65535, 1},
-                            Case{"e.###.tif", VoxelType::Int16, 32767, -1},
-                            Case{"f.###.tif", VoxelType::Float, 4000, 0.1F},
-                            Case{"g.###.tiff", VoxelType::Double, 4000, 0.1F},
-                            Case{"h.###.exr", VoxelType::Half, 2048, 1},
-                            Case{"i.###.exr", VoxelType::Float, 4000, 0.1F},
-                            Case{"j.tif", VoxelType::UInt8, 255, 1},
-                            Case{"k.tif", VoxelType::UInt16, 65535, 1},
-                            Case{"l.tif", VoxelType::Float, 4000, 0.1F}}) {
+    for (const Case& one :
+         {Case{"a.###.png", VoxelType::UInt8, 255, 1},
+          Case{"b%03d.png", VoxelType::UInt16, 65535, 1},
+          Case{"c.###.tif", VoxelType::UInt8, 255, 1},
+          Case{"d.###.tif", VoxelType::UInt16, 65535, 1},
+          Case{"e.###.tif", VoxelType::Int16, 32767, -1},
+          Case{"f.###.tif", VoxelType::Float, 4000, 0.1F},
+          Case{"g.###.tiff", VoxelType::Double, 4000, 0.1F},
+          Case{"h.###.exr", VoxelType::Half, 2048, 1},
+          Case{"i.###.exr", VoxelType::Float, 4000, 0.1F}, Case{"j.tif", VoxelType::UInt8, 255, 1},
+          Case{"k.tif", VoxelType::UInt16, 65535, 1},
+          Case{"l.tif", VoxelType::Float, 4000, 0.1F}}) {
         const auto grid = makeStackGrid(one.largest, one.factor);
         writeStack(one.name, *grid, one.type);
         expectSame(mFolder / one.name, *grid);

@@ -140,8 +140,8 @@ TEST_F(DicomSeries, OrdersObliqueSlicesByTheirPlaces) {
     EXPECT_EQ(info.space, "left-posterior-superior");
     EXPECT_EQ(info.unit, "mm");
     EXPECT_TRUE(info.hasTransform);
-    for (const Vec3d& at : {Vec3d(0, 0, 0), Vec3d(3, 0, 0), Vec3d(0, 2, 0), Vec3d(0, 0, 4),
-                            Vec3d(2, 1, 3)}) {
+    for (const Vec3d& at :
+         {Vec3d(0, 0, 0), Vec3d(3, 0, 0), Vec3d(0, 2, 0), Vec3d(0, 0, 4), Vec3d(2, 1, 3)}) {
         const Vec3d expected = first + at[0] * 0.25 * row + at[1] * 0.5 * column + at[2] * step;
         EXPECT_LT((info.toWorld.transform(at) - expected).length(), 1e-6) << at;
     }
@@ -201,10 +201,10 @@ TEST_F(DicomSeries, ChoosesASeries) {
     for (int z = 0; z < 3; ++z) {
         write("a" + std::to_string(z),
               TestSlice{.position = {0, 0, double(z)}, .values = valuesFrom(z)}.file());
-        write("b" + std::to_string(z), TestSlice{.series = "1.2.9",
-                                                 .position = {0, 0, double(z)},
-                                                 .values = valuesFrom(50 + z)}
-                                           .file());
+        write("b" + std::to_string(z),
+              TestSlice{
+                  .series = "1.2.9", .position = {0, 0, double(z)}, .values = valuesFrom(50 + z)}
+                  .file());
     }
     DicomWriter report;
     report.text(0x00080060, "CS", "SR");

@@ -17,8 +17,8 @@ class DicomWriter {
     }
 
     void number(std::uint32_t tag, std::uint16_t value) {
-        put(mData, tag, "US", std::string{static_cast<char>(value & 255),
-                                          static_cast<char>(value >> 8)});
+        put(mData, tag, "US",
+            std::string{static_cast<char>(value & 255), static_cast<char>(value >> 8)});
     }
 
     /// A sequence, each item of which holds what a writer has been given.

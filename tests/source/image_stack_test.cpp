@@ -91,9 +91,9 @@ TEST_F(ImageStack, ReadsSequencesOfAllTypesAsTheyAreStored) {
         writeSlice<std::uint16_t>(named("b", number, ".png"), z, {.type = TypeDesc::UINT16}, 300);
         writeSlice<std::uint8_t>(named("c", number, ".tif"), z, {.tile = 16});
         writeSlice<std::int16_t>(named("d", number, ".tif"), z, {.type = TypeDesc::INT16}, -100);
-        writeSlice<std::uint16_t>(
-            named("e", number, ".tif"), z,
-            {.type = TypeDesc::UINT16, .texts = {{"compression", "zip"}}}, 300);
+        writeSlice<std::uint16_t>(named("e", number, ".tif"), z,
+                                  {.type = TypeDesc::UINT16, .texts = {{"compression", "zip"}}},
+                                  300);
         writeSlice<float>(named("f", number, ".tif"), z,
                           {.type = TypeDesc::FLOAT, .texts = {{"compression", "lzw"}}}, 0.1F);
         writeSlice<double>(named("g", number, ".tif"), z, {.type = TypeDesc::DOUBLE}, 0.5F);
@@ -129,8 +129,7 @@ TEST_F(ImageStack, ReadsFoldersInTheOrderOfNumbers) {
     expectStack(mFolder, 12, "uint16");
     const auto info = openArray(mFolder)->info();
     ASSERT_EQ(info.notes.size(), 1U);
-    EXPECT_EQ(info.notes[0],
-              "3 entries of the folder were left out: .hidden.tif, more, notes.txt");
+    EXPECT_EQ(info.notes[0], "3 entries of the folder were left out: .hidden.tif, more, notes.txt");
 
     fs::remove(mFolder / "x2_7_v.TIF");
     expectRefused(mFolder, {"x2_0_v.TIF to x2_11_v.TIF", "the number 7 is missing"});
@@ -169,10 +168,9 @@ TEST_F(ImageStack, SaysWhichSliceDiffers) {
 }
 
 TEST_F(ImageStack, ReadsPages) {
-    writeTestImage<float>(mFolder / "p.tif", {.type = TypeDesc::FLOAT}, 11,
-                          [](int x, int y, int, int page) {
-                              return 0.5F * static_cast<float>(valueOf(x, y, page));
-                          });
+    writeTestImage<float>(
+        mFolder / "p.tif", {.type = TypeDesc::FLOAT}, 11,
+        [](int x, int y, int, int page) { return 0.5F * static_cast<float>(valueOf(x, y, page)); });
     expectStack(mFolder / "p.tif", 11, "float32", 0.5F);
     EXPECT_FALSE(openArray(mFolder / "p.tif")->info().hasTransform);
 }
@@ -188,9 +186,7 @@ TEST_F(ImageStack, ReadsWhatImageJSaysOfVoxels) {
     auto source = openArray(mFolder / "i.tif");
     EXPECT_TRUE(source->info().hasTransform);
     EXPECT_EQ(source->info().unit, "micron");
-    EXPECT_TRUE(source->info()
-                    .toWorld.transform(Vec3d(1, 1, 1))
-                    .eq(Vec3d(0.25, 0.5, 2.5), 1e-6));
+    EXPECT_TRUE(source->info().toWorld.transform(Vec3d(1, 1, 1)).eq(Vec3d(0.25, 0.5, 2.5), 1e-6));
     // What is asked for goes before that.
     source->place(Vec3d(1, 2, 3), Vec3d(10, 20, 30));
     EXPECT_TRUE(source->info().toWorld.transform(Vec3d(1, 1, 1)).eq(Vec3d(11, 22, 33), 1e-9));
@@ -252,9 +248,9 @@ struct HandMadeTiff {
         put(text, 8 + data.size() + data.size() % 2, 4);
         text += data + std::string(data.size() % 2, '\0');
         const std::vector<std::array<std::uint32_t, 3>> tags{
-            {256, 4, width}, {257, 4, height}, {258, 3, bits}, {259, 3, 1},
-            {262, 3, 1},     {273, 4, 8},      {277, 3, 1},    {278, 4, height},
-            {279, 4, static_cast<std::uint32_t>(data.size())}};
+            {256, 4, width}, {257, 4, height}, {258, 3, bits},
+            {259, 3, 1},     {262, 3, 1},      {273, 4, 8},
+            {277, 3, 1},     {278, 4, height}, {279, 4, static_cast<std::uint32_t>(data.size())}};
         put(text, tags.size(), 2);
         for (const auto& [tag, type, value] : tags) {
             put(text, tag, 2);
@@ -301,10 +297,11 @@ TEST_F(ImageStack, RefusesDamagedAndHugeFiles) {
     expectRefused(write("no.png", "no image"), {"no.png", "no image that can be read"});
     expectRefused(write("empty.exr", ""), {"empty.exr"});
 
-    writeTestImage<std::uint8_t>(mFolder / "whole.tif", {.width = 60, .height = 60, .texts = {{"compression", "none"}}}, 5,
-                                 [](int x, int y, int, int page) {
-                                     return static_cast<std::uint8_t>((x * 7919 + y * 104729 + page * 31) % 251);
-                                 });
+    writeTestImage<std::uint8_t>(
+        mFolder / "whole.tif", {.width = 60, .height = 60, .texts = {{"compression", "none"}}}, 5,
+        [](int x, int y, int, int page) {
+            return static_cast<std::uint8_t>((x * 7919 + y * 104729 + page * 31) % 251);
+        });
     std::ifstream whole(mFolder / "whole.tif", std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(whole)), {});
     ASSERT_GT(bytes.size(), 10000U);

@@ -16,8 +16,8 @@ namespace bandvox {
 class StackFolder : public testing::Test {
   protected:
     void SetUp() override {
-        mFolder = std::filesystem::temp_directory_path() /
-                  ("bandvox-stack-" + std::to_string(getpid()));
+        mFolder =
+            std::filesystem::temp_directory_path() / ("bandvox-stack-" + std::to_string(getpid()));
         std::filesystem::create_directories(mFolder);
     }
     void TearDown() override { std::filesystem::remove_all(mFolder); }
@@ -34,10 +34,10 @@ class StackFolder : public testing::Test {
 struct TestImage {
     int width = 5, height = 3, channels = 1;
     OIIO::TypeDesc type = OIIO::TypeDesc::UINT8;
-    std::vector<std::pair<std::string, std::string>> texts;     ///< attributes
-    std::vector<std::pair<std::string, int>> numbers;           ///< the same
-    std::vector<std::pair<std::string, float>> decimals;        ///< the same
-    int tile = 0;                                               ///< its side; 0: none
+    std::vector<std::pair<std::string, std::string>> texts;  ///< attributes
+    std::vector<std::pair<std::string, int>> numbers;        ///< the same
+    std::vector<std::pair<std::string, float>> decimals;     ///< the same
+    int tile = 0;                                            ///< its side; 0: none
 };
 
 /// Writes pages of values (x, y, channel, page), as they are.
@@ -59,9 +59,9 @@ void writeTestImage(const std::filesystem::path& path, const TestImage& image, i
                 for (int c = 0; c < image.channels; ++c) values.push_back(value(x, y, c, page));
             }
         }
-        ASSERT_TRUE(output->open(path.string(), spec,
-                                 page == 0 ? OIIO::ImageOutput::Create
-                                           : OIIO::ImageOutput::AppendSubimage))
+        ASSERT_TRUE(
+            output->open(path.string(), spec,
+                         page == 0 ? OIIO::ImageOutput::Create : OIIO::ImageOutput::AppendSubimage))
             << output->geterror();
         ASSERT_TRUE(output->write_image(image.type, values.data())) << output->geterror();
     }

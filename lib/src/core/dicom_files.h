@@ -22,11 +22,11 @@ struct DicomInfo {
     std::string modality;     ///< "CT", ...
     std::string photometric;  ///< "MONOCHROME2", ...
     int width = 0, height = 0;
-    int bitsAllocated = 0;   ///< 8, 16 or 32
-    int bitsStored = 0;      ///< at most that
-    int highBit = 0;         ///< the last one that is used
-    bool isSigned = false;   ///< two's complement
-    double sliceStep = 0;    ///< mm between slices, or as thick as they are; 0 if not said
+    int bitsAllocated = 0;           ///< 8, 16 or 32
+    int bitsStored = 0;              ///< at most that
+    int highBit = 0;                 ///< the last one that is used
+    bool isSigned = false;           ///< two's complement
+    double sliceStep = 0;            ///< mm between slices, or as thick as they are; 0 if not said
     std::vector<DicomFrame> frames;  ///< none if there are no images in it
 };
 

@@ -50,9 +50,9 @@ struct WriteFailure {
     int diskError = 0;  ///< of the stream, as in errno; 0 if nothing did
 };
 
-/// Reads and writes image files with OpenImageIO and DCMTK. These libraries depend on hundreds of others, and
-/// loading them takes longer than many a picture, so it lies in a module that is loaded when it is
-/// first needed.
+/// Reads and writes image files with OpenImageIO and DCMTK. These libraries depend on hundreds of
+/// others, and loading them takes longer than many a picture, so it lies in a module that is loaded
+/// when it is first needed.
 class ImageLibrary {
   public:
     virtual ~ImageLibrary() = default;

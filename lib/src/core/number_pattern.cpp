@@ -50,7 +50,8 @@ std::optional<NumberPattern> NumberPattern::parse(const std::filesystem::path& p
 
 std::filesystem::path NumberPattern::with(int number) const {
     std::string text = std::to_string(number);
-    if (static_cast<int>(text.size()) < digits) text.insert(0, static_cast<std::size_t>(digits) - text.size(), '0');
+    if (static_cast<int>(text.size()) < digits)
+        text.insert(0, static_cast<std::size_t>(digits) - text.size(), '0');
     return before + text + after;
 }
 

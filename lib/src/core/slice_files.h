@@ -11,13 +11,13 @@ namespace bandvox {
 /// What a file of images says of them.
 struct SliceFileInfo {
     int width = 0, height = 0;
-    int pages = 0;                                 ///< all alike
-    std::vector<std::string> channels;             ///< "Y", "R", "A", ...
-    std::string type;                              ///< "uint8", "uint16", "float16", ...
-    int bits = 0;                                  ///< of a value, before it was widened to `type`
-    double pageBytes = 0;                          ///< memory that reading a page takes
-    std::string description;                       ///< free text; empty if there is none
-    std::array<double, 2> resolution{};            ///< pixels per unit along x and y; 0: unknown
+    int pages = 0;                       ///< all alike
+    std::vector<std::string> channels;   ///< "Y", "R", "A", ...
+    std::string type;                    ///< "uint8", "uint16", "float16", ...
+    int bits = 0;                        ///< of a value, before it was widened to `type`
+    double pageBytes = 0;                ///< memory that reading a page takes
+    std::string description;             ///< free text; empty if there is none
+    std::array<double, 2> resolution{};  ///< pixels per unit along x and y; 0: unknown
 };
 
 /// The images of a file, with values as they are stored: nothing is done to colours, alpha is not

@@ -10,10 +10,10 @@ namespace bandvox {
 struct ArrayHeaderRequest {
     openvdb::Coord size;
     VoxelType type = VoxelType::Float;
-    openvdb::Mat4d toWorld;   ///< from the index in the array, acting on rows
-    std::string space;        ///< of bandvox_space; empty if not known
+    openvdb::Mat4d toWorld;  ///< from the index in the array, acting on rows
+    std::string space;       ///< of bandvox_space; empty if not known
     bool compressed = false;
-    std::string valuesFile;   ///< its name; empty if the values follow
+    std::string valuesFile;  ///< its name; empty if the values follow
 };
 
 /// Throw Error(ErrorKind::Usage) if the format cannot hold the type.

@@ -31,9 +31,9 @@ bool isWholeType(VoxelType type) {
 
 // What happens to values on their way.
 struct Encoding {
-    double low = 0, factor = 1;      // stored = (value - low) · factor
-    double least = 0, largest = 0;   // of what can be stored
-    double slack = 0;                // beyond these without being clipped
+    double low = 0, factor = 1;     // stored = (value - low) · factor
+    double least = 0, largest = 0;  // of what can be stored
+    double slack = 0;               // beyond these without being clipped
     bool rounds = false;
 };
 
@@ -174,8 +174,7 @@ VoxelSlices::VoxelSlices(const openvdb::FloatGrid& grid, const VoxelsToWrite& vo
     mResult.count = static_cast<std::int64_t>(count);
     mResult.minimum = std::numeric_limits<double>::infinity();
     mResult.maximum = -mResult.minimum;
-    requireMemory(count / slices() * kVoxelLeafSide *
-                      double(sizeof(float) + bytesOf(mVoxels.type)),
+    requireMemory(count / slices() * kVoxelLeafSide * double(sizeof(float) + bytesOf(mVoxels.type)),
                   "eight slices of the array");
 }
 

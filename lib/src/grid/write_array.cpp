@@ -116,6 +116,18 @@ void writeValues(VoxelSlices& slices, PackedOutput& output, Progress& progress) 
 
 }  // namespace
 
+WrittenVoxels examineVoxels(const openvdb::FloatGrid& grid, const VoxelsToWrite& voxels,
+                            Progress& progress) {
+    VoxelSlices slices(grid, voxels, {0, 1, 2});
+    const ProgressStage stage(progress, "examining", slices.slices());
+    while (const int count = slices.together()) {
+        progress.throwIfInterrupted();
+        slices.next();
+        progress.advance(count);
+    }
+    return slices.result();
+}
+
 WrittenVoxels writeArray(AtomicFile& file, AtomicFile* values, ArrayFormat format,
                          const openvdb::FloatGrid& grid, const ArrayWriteOptions& options,
                          Progress& progress) {
@@ -128,8 +140,7 @@ WrittenVoxels writeArray(AtomicFile& file, AtomicFile* values, ArrayFormat forma
         throw Error(ErrorKind::Input, "the transform of the grid '" + grid.getName() +
                                           "' is not linear; expected one that is");
     }
-    VoxelSlices slices(grid, options.voxels,
-                       isNpy ? std::array{2, 1, 0} : std::array{0, 1, 2});
+    VoxelSlices slices(grid, options.voxels, isNpy ? std::array{2, 1, 0} : std::array{0, 1, 2});
     ArrayHeaderRequest request;
     request.size = slices.size();
     request.type = options.voxels.type;

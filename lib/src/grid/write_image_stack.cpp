@@ -85,10 +85,10 @@ void requireNoOthers(const fs::path& path, const NumberPattern& pattern, int sli
         const fs::path entry = inFolder ? entries->path() : entries->path().filename();
         const auto number = pattern.numberOf(entry);
         if (!number || *number < slices) continue;
-        throw Error(ErrorKind::Runtime,
-                    "cannot write " + path.string() + ": the stack has " + std::to_string(slices) +
-                        " slices, and there is a file " + entry.string() +
-                        " that would pass for one; expected no such files");
+        throw Error(ErrorKind::Runtime, "cannot write " + path.string() + ": the stack has " +
+                                            std::to_string(slices) +
+                                            " slices, and there is a file " + entry.string() +
+                                            " that would pass for one; expected no such files");
     }
 }
 
@@ -123,9 +123,9 @@ void requireImageType(const fs::path& path, VoxelType type) {
             if (!known.empty()) known += ", ";
             known += voxelTypeNames()[static_cast<std::size_t>(one)];
         }
-        throw Error(ErrorKind::Usage,
-                    "a file '" + path.string() + "' holds no values of type " +
-                        voxelTypeNames()[static_cast<std::size_t>(type)] + "; expected " + known);
+        throw Error(ErrorKind::Usage, "a file '" + path.string() + "' holds no values of type " +
+                                          voxelTypeNames()[static_cast<std::size_t>(type)] +
+                                          "; expected " + known);
     }
     if (imageExtension(path) != ".tif") patternOf(path);
 }

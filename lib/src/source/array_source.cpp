@@ -1,9 +1,8 @@
+#include "core/words.h"
 #include "source/array_header.h"
 #include "source/dicom_series.h"
 #include "source/image_stack.h"
 #include "source/stack_files.h"
-
-#include "core/words.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/source/array_source.h>
@@ -221,8 +220,7 @@ void ArraySource::place(const std::optional<openvdb::Vec3d>& spacing,
     openvdb::Mat4d& matrix = mInfo.toWorld;
     for (int axis = 0; spacing && axis < 3; ++axis) {
         if (!((*spacing)[axis] > 0 && std::isfinite((*spacing)[axis]))) {
-            throw Error(ErrorKind::Usage, "the spacing of voxels is " +
-                                              inShort((*spacing)[axis]) +
+            throw Error(ErrorKind::Usage, "the spacing of voxels is " + inShort((*spacing)[axis]) +
                                               " along an axis; expected it above 0");
         }
         const openvdb::Vec3d step(matrix(axis, 0), matrix(axis, 1), matrix(axis, 2));
@@ -238,7 +236,8 @@ std::unique_ptr<ArraySource> openArray(const fs::path& path, const ArrayReadOpti
     std::error_code ignored;
     if (!isArrayFile(path)) {
         StackFiles files = findStack(path);
-        if (files.kind == StackFiles::Kind::Dicom) return openDicomSeries(std::move(files), options);
+        if (files.kind == StackFiles::Kind::Dicom)
+            return openDicomSeries(std::move(files), options);
         return openImageStack(std::move(files), options);
     }
     if (!options.channel.empty() || !options.series.empty()) {

@@ -58,8 +58,8 @@ ChannelChoice::ChannelChoice(const std::string& name, const SliceFileInfo& info,
         mFirst = channelNamed(mNames, asked);
         if (mFirst >= 0) return;
         throw Error(ErrorKind::Usage, "the channel '" + asked + "' of " + name +
-                                          " was asked for, and its channels are " +
-                                          listOf(mNames) + "; expected one of them, or a number "
+                                          " was asked for, and its channels are " + listOf(mNames) +
+                                          "; expected one of them, or a number "
                                           "from 0");
     }
     if (mNames.size() == 1) return;

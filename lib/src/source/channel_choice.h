@@ -27,8 +27,8 @@ class ChannelChoice {
   private:
     enum class Way { One, Equal, Luminance } mWay = Way::One;
     int mFirst = 0, mCount = 1;
-    std::vector<int> mColors;       // of those that are read
-    int mAlpha = -1;                // the same; -1: none
+    std::vector<int> mColors;         // of those that are read
+    int mAlpha = -1;                  // the same; -1: none
     std::vector<std::string> mNames;  // of all
 };
 

@@ -57,8 +57,8 @@ void requireComplete(const DicomSlice& slice) {
                           : !place.spacing     ? "PixelSpacing"
                                                : nullptr;
     if (missing) {
-        failArray(slice.name(), std::string("it has no ") + missing +
-                                    ", so that it is not known where it lies");
+        failArray(slice.name(),
+                  std::string("it has no ") + missing + ", so that it is not known where it lies");
     }
     const auto& axes = *place.orientation;
     const Vec3d row(axes[0], axes[1], axes[2]), column(axes[3], axes[4], axes[5]);
@@ -69,8 +69,8 @@ void requireComplete(const DicomSlice& slice) {
     }
     for (const double spacing : *place.spacing) {
         if (spacing > 0) continue;
-        failArray(slice.name(), "its PixelSpacing is " + listInWords(*place.spacing) +
-                                    "; expected it above 0");
+        failArray(slice.name(),
+                  "its PixelSpacing is " + listInWords(*place.spacing) + "; expected it above 0");
     }
 }
 
@@ -81,8 +81,8 @@ void requireEqual(const DicomSlice& slice, const DicomSlice& first, const char* 
     for (std::size_t i = 0; i < Count; ++i) {
         if (std::abs(found[i] - expected[i]) <= kTurnTolerance) continue;
         failArray(slice.name(), std::string("its ") + what + " is " + listInWords(found) +
-                                    ", and that of " + first.name() + " " +
-                                    listInWords(expected) + "; expected the same");
+                                    ", and that of " + first.name() + " " + listInWords(expected) +
+                                    "; expected the same");
     }
 }
 
@@ -105,8 +105,8 @@ void requireEvenSteps(const std::vector<DicomSlice>& slices, const Vec3d& normal
         }
         if (std::abs(steps[i] - usual) <= kPlaceTolerance * usual) continue;
         const double times = std::round(steps[i] / usual);
-        const bool isGap = times >= 2 && std::abs(steps[i] - times * usual) <=
-                                             times * kPlaceTolerance * usual;
+        const bool isGap =
+            times >= 2 && std::abs(steps[i] - times * usual) <= times * kPlaceTolerance * usual;
         std::string message = "it lies " + inShort(steps[i]) + " mm after " + before.name();
         message += ", and most slices " + inShort(usual) + " mm after the one before";
         failArray(after.name(),
@@ -121,9 +121,8 @@ void requireEvenSteps(const std::vector<DicomSlice>& slices, const Vec3d& normal
         const Vec3d expected = first + double(i) * step;
         const double distance = (positionOf(slices[i]) - expected).length();
         if (distance <= kPlaceTolerance * step.length() + 1e-3) continue;
-        failArray(slices[i].name(), "it lies at " + placeInWords(positionOf(slices[i])) +
-                                        ", " + inShort(distance) + " mm from " +
-                                        placeInWords(expected) +
+        failArray(slices[i].name(), "it lies at " + placeInWords(positionOf(slices[i])) + ", " +
+                                        inShort(distance) + " mm from " + placeInWords(expected) +
                                         ", where even steps from the first slice to the last "
                                         "would have it");
     }
@@ -147,15 +146,14 @@ openvdb::Mat4d orderByPlace(std::vector<DicomSlice>& slices, double step) {
     const std::array<double, 2> spacing = *slices.front().place.spacing;
     const Vec3d row(axes[0], axes[1], axes[2]), column(axes[3], axes[4], axes[5]);
     const Vec3d normal = row.cross(column).unit();
-    std::stable_sort(slices.begin(), slices.end(),
-                     [&](const DicomSlice& a, const DicomSlice& b) {
-                         return positionOf(a).dot(normal) < positionOf(b).dot(normal);
-                     });
+    std::stable_sort(slices.begin(), slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
+        return positionOf(a).dot(normal) < positionOf(b).dot(normal);
+    });
     Vec3d across = normal * (step > 0 ? step : 1.0);
     if (slices.size() > 1) {
         requireEvenSteps(slices, normal);
-        across = (positionOf(slices.back()) - positionOf(slices.front())) /
-                 double(slices.size() - 1);
+        across =
+            (positionOf(slices.back()) - positionOf(slices.front())) / double(slices.size() - 1);
     }
     // Rows lie as far apart as the first number says, columns as the second.
     const std::array<Vec3d, 4> rows{row * spacing[1], column * spacing[0], across,

@@ -69,17 +69,14 @@ void toValues(const std::vector<char>& bytes, const DicomInfo& info, const Dicom
         auto number = static_cast<std::int64_t>((std::uint64_t(raw) >> shift) & mask);
         // Two's complement of so many bits.
         if (info.isSigned) number = (number ^ sign) - sign;
-        values[i] = static_cast<float>(frame.slope * static_cast<double>(number) +
-                                       frame.intercept);
+        values[i] = static_cast<float>(frame.slope * static_cast<double>(number) + frame.intercept);
     }
 }
 
 class DicomArray final : public ArraySource {
   public:
     DicomArray(ArrayInfo info, std::vector<DicomSlice> slices, DicomInfo storage)
-        : ArraySource(std::move(info)),
-          mSlices(std::move(slices)),
-          mStorage(std::move(storage)) {}
+        : ArraySource(std::move(info)), mSlices(std::move(slices)), mStorage(std::move(storage)) {}
 
     void readSlices(std::span<float> values) override {
         const auto perSlice = static_cast<std::size_t>(info().valuesPerSlice());
@@ -153,9 +150,9 @@ SeriesMap examineFiles(StackFiles& files) {
         series[id].push_back(std::move(member));
     }
     if (!without.empty()) {
-        files.notes.push_back(
-            counted(without.size(), "DICOM file holds", "DICOM files hold") +
-            " no images and was left out: " + without.front() + (without.size() > 1 ? ", ..." : ""));
+        files.notes.push_back(counted(without.size(), "DICOM file holds", "DICOM files hold") +
+                              " no images and was left out: " + without.front() +
+                              (without.size() > 1 ? ", ..." : ""));
     }
     if (series.empty()) failArray(files.name, "none of its DICOM files holds images");
     return series;
@@ -200,8 +197,8 @@ std::vector<DicomSlice> slicesOf(const std::vector<Member>& members) {
     for (const Member& member : members) {
         const int frames = static_cast<int>(member.info.frames.size());
         if (frames > 1 && members.size() > 1) {
-            failArray(member.path, "it holds " + std::to_string(frames) + " frames, and is one of " +
-                                       std::to_string(members.size()) +
+            failArray(member.path, "it holds " + std::to_string(frames) +
+                                       " frames, and is one of " + std::to_string(members.size()) +
                                        " files; expected one file, or one frame in each");
         }
         for (int frame = 0; frame < frames; ++frame) {
@@ -222,7 +219,8 @@ bool isWithoutPlaces(const std::vector<DicomSlice>& slices) {
 // How large voxels of such frames are, as far as that is known.
 void placeBySpacing(const DicomInfo& storage, ArrayInfo& info) {
     const auto& spacing = storage.frames.front().spacing;
-    info.notes.emplace_back("the file does not say where its frames lie; they are taken as they come");
+    info.notes.emplace_back(
+        "the file does not say where its frames lie; they are taken as they come");
     if (!spacing || storage.sliceStep <= 0) return;
     info.toWorld.preScale(openvdb::Vec3d((*spacing)[1], (*spacing)[0], storage.sliceStep));
     info.hasTransform = true;
@@ -248,8 +246,8 @@ std::unique_ptr<ArraySource> openDicomSeries(StackFiles files, const ArrayReadOp
     std::vector<DicomSlice> slices = slicesOf(members);
     ArrayInfo info;
     info.name = files.name.string();
-    info.size = arraySize(files.name, {double(storage.width), double(storage.height),
-                                       double(slices.size())});
+    info.size = arraySize(files.name,
+                          {double(storage.width), double(storage.height), double(slices.size())});
     info.axes = {0, 1, 2};
     info.valueType = (storage.isSigned ? "int" : "uint") + std::to_string(storage.bitsAllocated);
     info.notes = std::move(files.notes);
@@ -270,9 +268,9 @@ std::unique_ptr<ArraySource> openDicomSeries(StackFiles files, const ArrayReadOp
             "these are images in which small values are shown bright (MONOCHROME1); values are "
             "taken as they are");
     }
-    requireMemory(double(kFilesTogether) * double(info.valuesPerSlice()) *
-                      double(storage.bitsAllocated) / 4,
-                  "some slices of the series");
+    requireMemory(
+        double(kFilesTogether) * double(info.valuesPerSlice()) * double(storage.bitsAllocated) / 4,
+        "some slices of the series");
     return std::make_unique<DicomArray>(std::move(info), std::move(slices), storage);
 }
 

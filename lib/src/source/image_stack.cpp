@@ -136,8 +136,7 @@ class ImageStack final : public ArraySource {
         }
         std::vector<float> all(to.size() * static_cast<std::size_t>(mChannels.count()));
         toFloats(bytes.data(), all, mType, kBigEndian);
-        mChannels.combine(all, to, fullAlpha(), path.string() + pageInWords(page),
-                          info().size.x());
+        mChannels.combine(all, to, fullAlpha(), path.string() + pageInWords(page), info().size.x());
     }
 
     std::string pageInWords(int page) const {
@@ -194,8 +193,8 @@ void calibrate(const fs::path& path, const SliceFileInfo& first, ArrayInfo& info
     const bool isAlone = info.size.z() == first.pages;
     if (isAlone && calibration->images > first.pages) {
         failArray(path, "its description says that it holds " +
-                            std::to_string(calibration->images) +
-                            " images, and it has " + counted(first.pages, "page", "pages") +
+                            std::to_string(calibration->images) + " images, and it has " +
+                            counted(first.pages, "page", "pages") +
                             "; expected as many. (More than 4 GB are written like that by ImageJ "
                             "itself, and not read: save them as a sequence.)");
     }

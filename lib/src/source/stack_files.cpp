@@ -25,8 +25,9 @@ constexpr std::size_t kMostNamed = 5;  // in a message
 
 // Kinds of images, and all the extensions of each.
 constexpr std::array<std::string_view, 24> kImageExtensions{
-    ".tif", ".tiff", ".png", ".exr", ".bmp", ".jpg", ".jpeg", ".jp2", ".j2k",  ".pgm", ".ppm", ".pnm",
-    ".pbm", ".pfm",  ".dpx", ".tga", ".psd", ".webp", ".sgi", ".fits", ".cin", ".iff", ".ico", ".hdr"};
+    ".tif", ".tiff", ".png", ".exr",  ".bmp", ".jpg", ".jpeg", ".jp2",
+    ".j2k", ".pgm",  ".ppm", ".pnm",  ".pbm", ".pfm", ".dpx",  ".tga",
+    ".psd", ".webp", ".sgi", ".fits", ".cin", ".iff", ".ico",  ".hdr"};
 
 std::string extensionInLowerCase(const fs::path& path) {
     std::string extension = path.extension().string();
@@ -59,8 +60,7 @@ bool hasDicomStart(const fs::path& path) {
     std::error_code ignored;
     if (!fs::is_regular_file(path, ignored)) return false;
     std::ifstream stream(path, std::ios::binary);
-    return stream.read(bytes.data(), bytes.size()) &&
-           std::string_view(&bytes[kStart], 4) == "DICM";
+    return stream.read(bytes.data(), bytes.size()) && std::string_view(&bytes[kStart], 4) == "DICM";
 }
 
 // Some of the names, and how many more there are.
@@ -251,9 +251,9 @@ StackFiles findInFolder(const fs::path& folder) {
                               "); expected one kind, or a pattern as slice.####.tif");
     }
     if (!content.others.empty()) {
-        stack.notes.push_back(
-            counted(content.others.size(), "entry of the folder was", "entries of the folder were") +
-            " left out: " + someOf(content.others));
+        stack.notes.push_back(counted(content.others.size(), "entry of the folder was",
+                                      "entries of the folder were") +
+                              " left out: " + someOf(content.others));
     }
     if (!content.dicom.empty()) {
         stack.kind = StackFiles::Kind::Dicom;
@@ -261,7 +261,8 @@ StackFiles findInFolder(const fs::path& folder) {
         return stack;
     }
     if (content.images.empty()) {
-        failArray(folder, "it is a folder without images; expected images of slices, or DICOM files");
+        failArray(folder,
+                  "it is a folder without images; expected images of slices, or DICOM files");
     }
     stack.files = std::move(content.images.begin()->second);
     sortByNumbers(folder, stack);

@@ -16,8 +16,7 @@ constexpr int kMostDirectories = 1 << 20;
 
 class TiffBytes {
   public:
-    explicit TiffBytes(const std::filesystem::path& path)
-        : mStream(path, std::ios::binary) {}
+    explicit TiffBytes(const std::filesystem::path& path) : mStream(path, std::ios::binary) {}
 
     // The number of so many bytes at a place; nothing beyond the end.
     std::optional<std::uint64_t> number(std::uint64_t place, int size) {
@@ -65,15 +64,15 @@ std::optional<int> countTiffPages(const std::filesystem::path& path) {
         const auto entries = bytes.number(*place, countBytes);
         constexpr std::uint64_t kMostEntries = 1 << 16;
         place = entries && *entries <= kMostEntries
-                    ? bytes.number(*place + static_cast<std::uint64_t>(countBytes) +
-                                       *entries * entryBytes,
-                                   offsetBytes)
+                    ? bytes.number(
+                          *place + static_cast<std::uint64_t>(countBytes) + *entries * entryBytes,
+                          offsetBytes)
                     : std::nullopt;
         if (place) ++pages;
     }
     if (!place) {
-        failArray(path, "it is cut short or damaged: what describes page " +
-                            std::to_string(pages) + " is not in it");
+        failArray(path, "it is cut short or damaged: what describes page " + std::to_string(pages) +
+                            " is not in it");
     }
     if (*place != 0) failArray(path, "it has more than 2^20 pages; expected fewer");
     return pages;

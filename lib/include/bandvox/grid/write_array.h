@@ -31,14 +31,19 @@ struct VoxelsToWrite {
 
 /// What was written.
 struct WrittenVoxels {
-    openvdb::CoordBBox box;         ///< in voxels of the grid
-    double minimum = 0;             ///< of the values in it, before they became another type
-    double maximum = 0;             ///< the same
-    std::int64_t count = 0;         ///< of voxels
-    std::int64_t clipped = 0;       ///< values that the type cannot hold, and that became its
-                                    ///< largest or smallest; beyond a range by more than 0.001 of it
-    std::int64_t rounded = 0;       ///< values that stayed as they are, but were no whole numbers
+    openvdb::CoordBBox box;    ///< in voxels of the grid
+    double minimum = 0;        ///< of the values in it, before they became another type
+    double maximum = 0;        ///< the same
+    std::int64_t count = 0;    ///< of voxels
+    std::int64_t clipped = 0;  ///< values that the type cannot hold, and that became its
+                               ///< largest or smallest; beyond a range by more than 0.001 of it
+    std::int64_t rounded = 0;  ///< values that stayed as they are, but were no whole numbers
 };
+
+/// What writing these voxels would give, without writing: for outputs of several files, which are
+/// to be written all or none. Throws as writeArray.
+WrittenVoxels examineVoxels(const openvdb::FloatGrid& grid, const VoxelsToWrite& voxels = {},
+                            Progress& progress = silentProgress());
 
 /// A format of arrays.
 enum class ArrayFormat {
