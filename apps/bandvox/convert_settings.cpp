@@ -5,6 +5,7 @@
 #include "convert_stamp.h"
 #include "convert_to_mesh.h"
 #include "mesh_output.h"
+#include "stack_input.h"
 #include "standard_streams.h"
 #include "words.h"
 
@@ -89,7 +90,7 @@ void addLatticeDefaults(const CommandLine& line, const Add& add) {
     for (const char* name : {"resolution", "voxel-size", "factor", "onto", "grid", "iso"}) {
         add(name, "");
     }
-    if (isArrayFile(line.positional(0))) add("background", "0");
+    if (isStackInput(line.positional(0))) add("background", "0");
 }
 
 // Of a solid, whatever it comes from, that becomes a density.
@@ -246,7 +247,7 @@ Conversion conversionOf(const CommandLine& line) {
         return toMesh ? Conversion::GridSolidToMesh : Conversion::GridSolidToVolume;
     }
     if (convertsGridToMesh(line)) return Conversion::VolumeToMesh;
-    if (!isShape(input) && (extensionOf(input) == ".vdb" || isArrayFile(input))) {
+    if (!isShape(input) && (extensionOf(input) == ".vdb" || isStackInput(input))) {
         return Conversion::VolumeToVolume;
     }
     return toMesh ? Conversion::SolidToMesh : Conversion::SolidToVolume;

@@ -9,6 +9,7 @@
 #include <bandvox/core/memory.h>
 #include <bandvox/core/parallel.h>
 #include <bandvox/core/version.h>
+#include <bandvox/grid/array_box.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/grid/join_shards.h>
 #include <bandvox/resample/resample_grid.h>
@@ -191,6 +192,7 @@ void describeResult(openvdb::FloatGrid& grid, const openvdb::FloatGrid& source,
                     const ResampleOptions& options, double largestStep) {
     static_cast<openvdb::MetaMap&>(grid) = static_cast<const openvdb::MetaMap&>(source);
     setShardMetadata(grid, {options.shard, false, 0});
+    dropArrayBox(grid);
     std::optional<DensityMetadata> metadata = densityMetadata(source);
     const std::optional<ExponentialFilter> kept =
         options.filter ? options.filter : filterOf(metadata);
