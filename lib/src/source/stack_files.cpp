@@ -169,6 +169,7 @@ void sortByNumbers(const fs::path& name, StackFiles& stack) {
     }
     const auto numbersOf = [](const fs::path& file) { return partsOf(file).numbers; };
     std::vector<std::pair<std::vector<std::string>, fs::path>> keyed;
+    keyed.reserve(files.size());
     for (const fs::path& file : files) keyed.emplace_back(numbersOf(file), file);
     std::sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) {
         for (std::size_t i = 0; i < a.first.size(); ++i) {
