@@ -49,8 +49,8 @@ void registerCodecs() {
 std::string textOf(DcmItem& item, const DcmTagKey& tag) {
     OFString text;
     if (item.findAndGetOFStringArray(tag, text).bad()) return {};
-    const std::string all(text.c_str());
-    return all.substr(0, all.find_last_not_of(" ") + 1);
+    const std::string all(text.data(), text.size());
+    return all.substr(0, all.find_last_not_of(' ') + 1);
 }
 
 int numberOf(DcmItem& item, const DcmTagKey& tag, const char* name) {

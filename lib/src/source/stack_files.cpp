@@ -13,6 +13,7 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace bandvox {
 
@@ -38,7 +39,7 @@ std::string extensionInLowerCase(const fs::path& path) {
 
 // One name for all extensions of a kind; empty if it is no image's.
 std::string imageKind(const fs::path& path) {
-    const std::string extension = extensionInLowerCase(path);
+    std::string extension = extensionInLowerCase(path);
     if (std::find(kImageExtensions.begin(), kImageExtensions.end(), extension) ==
         kImageExtensions.end()) {
         return {};
@@ -168,6 +169,7 @@ void sortByNumbers(const fs::path& name, StackFiles& stack) {
     }
     const auto numbersOf = [](const fs::path& file) { return partsOf(file).numbers; };
     std::vector<std::pair<std::vector<std::string>, fs::path>> keyed;
+    keyed.reserve(files.size());
     for (const fs::path& file : files) keyed.emplace_back(numbersOf(file), file);
     std::sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) {
         for (std::size_t i = 0; i < a.first.size(); ++i) {
@@ -217,11 +219,12 @@ FolderContent listFolder(const fs::path& folder) {
         const fs::path& path = entries->path();
         if (++count > kMostFiles) failArray(folder, "it has more than 2^20 files; expected fewer");
         std::error_code ignored;
-        if (path.filename().string().starts_with('.') || !fs::is_regular_file(path, ignored)) {
-            content.others.push_back(path);
-        } else if (const std::string kind = imageKind(path); !kind.empty()) {
+        const bool isTaken =
+            !path.filename().string().starts_with('.') && fs::is_regular_file(path, ignored);
+        const std::string kind = isTaken ? imageKind(path) : "";
+        if (!kind.empty()) {
             content.images[kind].push_back(path);
-        } else if (hasDicomName(path) || hasDicomStart(path)) {
+        } else if (isTaken && (hasDicomName(path) || hasDicomStart(path))) {
             content.dicom.push_back(path);
         } else {
             content.others.push_back(path);
