@@ -253,7 +253,8 @@ void convertOne(ConvertJob& job) {
 bool asksForFrames(const CommandLine& line) {
     if (line.has("frames") || line.has("keep-going")) return true;
     const std::string output = line.text("output").value_or("");
-    if (hasFrame(output) && !isImagePattern(output)) return true;
+    // Of images, many are one stack.
+    if (hasFrame(output) && !isWritableImage(output)) return true;
     // Of other kinds of files, many may be one input.
     const std::string& input = line.positional(0);
     const bool isWhole = isMeshFile(input) || extensionOf(input) == ".vdb" || isArrayFile(input);
