@@ -327,7 +327,7 @@ openvdb::FloatGrid::Ptr rebuildLevelSet(CommandRun& run, const openvdb::FloatGri
         densityOn(run, solid, *cubesFor(*levelSet, request.lattice, request.onto), options);
     run.warn(density.warnings, ErrorKind::Result);
     setDensityMetadata(*density.grid, density.metadata);
-    const auto result = makeOutput(run, kind, density.grid);
+    auto result = makeOutput(run, kind, density.grid);
     result->setName(levelSet->getName());
     return result;
 }

@@ -162,6 +162,7 @@ class GridSurface final : public BoundarySource {
     double mIso;
     IndexMap mMap;  // to the source's world
     double mTurn;   // -1 where the map mirrors
+    Vec3d mMiddle;  // of the grid; about it volumes cancel little
     std::vector<Coord> mBlocks;
     BBoxd mBounds;
     double mVolume = 0, mArea = 0;
@@ -184,6 +185,7 @@ GridSurface::GridSurface(std::string name, const openvdb::FloatGrid::ConstPtr& g
     }
     const double volume = mMap.axes[0].cross(mMap.axes[1]).dot(mMap.axes[2]);
     mTurn = volume < 0 ? -1 : 1;
+    mMiddle = mMap.at(mGrid->evalActiveVoxelBoundingBox().getCenter());
     measure(progress);
     if (mBlocks.empty()) {
         float highest = mGrid->background();
@@ -232,8 +234,6 @@ void GridSurface::measure(Progress& progress) {
 void GridSurface::measureBlock(const Coord& origin, BlockTriangles& triangles,
                                const BlockValues& values, Part& part) const {
     const IndexMap map = mapOf(origin, 1);
-    // About the middle of all blocks volumes cancel little.
-    const Vec3d middle = mMap.at(mGrid->evalActiveVoxelBoundingBox().getCenter());
     triangles.forEachRing(
         values, [&](std::span<const Vec3d> places, const std::vector<openvdb::Vec3I>& numbers) {
             for (const openvdb::Vec3I& t : numbers) {
@@ -241,7 +241,7 @@ void GridSurface::measureBlock(const Coord& origin, BlockTriangles& triangles,
                 const Vec3d b = map.at(places[t[1]]);
                 const Vec3d c = map.at(places[t[2]]);
                 const Vec3d normal = mTurn * (b - a).cross(c - a);
-                part.volume.add((a - middle).dot(normal) / 6.0);
+                part.volume.add((a - mMiddle).dot(normal) / 6.0);
                 part.area.add(0.5 * normal.length());
                 part.bounds.expand(a);
                 part.bounds.expand(b);
