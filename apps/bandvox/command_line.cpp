@@ -1,10 +1,15 @@
 #include "command_line.h"
 
+#include "config_file.h"
 #include "words.h"
 
 #include <bandvox/core/error.h>
 
 #include <boost/program_options.hpp>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
 
 namespace po = boost::program_options;
 
@@ -30,23 +35,71 @@ po::options_description describe(const CommandTable& table) {
 }
 
 [[noreturn]] void throwUnknownOption(const CommandTable& table, const std::string& given) {
-    std::vector<std::string> names;
-    for (const OptionEntry& option : allOptions(table)) names.push_back(option.name);
     std::string bare = given.substr(std::min(given.find_first_not_of('-'), given.size()));
     bare = bare.substr(0, bare.find('='));
-    const std::string nearest = nearestName(bare, names);
     throwUsage("unknown option '" + given + "' for '" + table.name + "'; " +
-               (nearest.empty() ? "'bandvox " + table.name + " --help' lists them all"
-                                : "did you mean '--" + nearest + "'?"));
+               suggestionFor(table, bare));
+}
+
+// Whether an argument is --flag=true or --flag=false.
+std::optional<std::pair<std::string, bool>> flagSetting(const CommandTable& table,
+                                                        const std::string& argument) {
+    const std::size_t equals = argument.find('=');
+    if (!argument.starts_with("--") || equals == std::string::npos) return std::nullopt;
+    const std::string name = argument.substr(2, equals - 2);
+    const std::string value = argument.substr(equals + 1);
+    const OptionEntry* option = findOption(table, name);
+    if (option == nullptr || !option->argument.empty()) return std::nullopt;
+    if (value != "true" && value != "false") return std::nullopt;
+    return std::pair(name, value == "true");
 }
 
 }  // namespace
 
 CommandLine::CommandLine(const CommandTable& table, const std::vector<std::string>& arguments)
     : mTable(table) {
+    std::vector<std::string> others;
+    std::vector<std::string> flagsOff;
+    bool optionsEnded = false;
+    for (const std::string& argument : arguments) {
+        optionsEnded = optionsEnded || argument == "--";
+        const auto flag = optionsEnded ? std::nullopt : flagSetting(table, argument);
+        if (!flag || flag->second) {
+            others.push_back(flag ? "--" + flag->first : argument);
+        } else if (!mDecided.insert(flag->first).second) {
+            throwUsage("option '--" + flag->first + "' cannot be specified more than once");
+        } else {
+            flagsOff.push_back(flag->first);
+        }
+    }
+    parse(others);
+    for (const std::string& flag : flagsOff) {
+        if (has(flag)) throwUsage("option '--" + flag + "' cannot be both true and false");
+    }
+    for (const auto& [name, value] : all()) mDecided.insert(name);
+    const auto config = text("config");
+    if (!config) return;
+    const std::vector<ConfigEntry> entries = readConfigFile(*config, table);
+    std::vector<const ConfigEntry*> taken;
+    for (const ConfigEntry& entry : entries) {
+        if (!decides(entry.name)) taken.push_back(&entry);
+    }
+    // Not before all are looked at: within the file none of them wins over another.
+    for (const ConfigEntry* entry : taken) {
+        mDecided.insert(entry->name);
+        const OptionEntry* option = findOption(table, entry->name);
+        if (!option->argument.empty()) {
+            set(entry->name, entry->value, entry->origin);
+        } else if (entry->value == "true") {
+            set(entry->name, "", entry->origin);
+        }
+    }
+}
+
+void CommandLine::parse(const std::vector<std::string>& arguments) {
     namespace style = po::command_line_style;
     try {
-        const po::options_description description = describe(table);
+        const po::options_description description = describe(mTable);
         const po::parsed_options parsed = po::command_line_parser(arguments)
                                               .options(description)
                                               .style(style::unix_style & ~style::allow_guessing)
@@ -64,10 +117,29 @@ CommandLine::CommandLine(const CommandTable& table, const std::vector<std::strin
             set(name, text ? *text : std::string());
         }
     } catch (const po::unknown_option& error) {
-        throwUnknownOption(table, error.get_option_name());
+        throwUnknownOption(mTable, error.get_option_name());
     } catch (const po::error& error) {
         throwUsage(error.what());
     }
+}
+
+bool CommandLine::decides(const std::string& option) const {
+    if (mDecided.contains(option)) return true;
+    const std::vector<std::string> others = ruledOut(mTable, option);
+    return std::any_of(others.begin(), others.end(),
+                       [&](const std::string& other) { return has(other); });
+}
+
+void CommandLine::setUndecided(const std::string& option, const std::string& value,
+                               const std::string& origin) {
+    if (!mDecided.contains(option)) set(option, value, origin);
+}
+
+CommandLine CommandLine::withFiles(const std::string& input, const std::string& output) const {
+    CommandLine changed = *this;
+    changed.mPositionals.at(0) = input;
+    changed.set("output", output);
+    return changed;
 }
 
 std::string CommandLine::requiredText(const std::string& option) const {

@@ -13,6 +13,9 @@ namespace {
 
 constexpr std::chrono::milliseconds kDrawInterval{100};
 constexpr int kBarWidth = 30;
+// Who reads lines wants to know of a change soon, and not to be kept busy by them.
+constexpr std::chrono::milliseconds kPrintInterval{250};
+constexpr int kLastPercent = 99;  // before all is done
 constexpr std::size_t kNarrowestLine = 20;
 
 std::size_t terminalWidth() {
@@ -26,17 +29,18 @@ std::size_t terminalWidth() {
 void CommandProgress::begin(std::string_view stage, std::int64_t steps) {
     const std::scoped_lock lock(mMutex);
     mRunning.push_back({std::string(stage), steps, mDone.exchange(0), Clock::now()});
-    if (mVisible) draw(mRunning.back().start);
+    mEstimate.begin(stage);
+    show(mRunning.back().start);
 }
 
 void CommandProgress::advance(std::int64_t steps) {
     mDone.fetch_add(steps, std::memory_order_relaxed);
-    if (!mVisible) return;
+    if (mDisplay == ProgressDisplay::None) return;
     const Clock::time_point now = Clock::now();
     if (now.time_since_epoch().count() < mNextDraw.load(std::memory_order_relaxed)) return;
     // Whoever finds somebody else drawing has work to do.
     const std::unique_lock lock(mMutex, std::try_to_lock);
-    if (lock.owns_lock()) draw(now);
+    if (lock.owns_lock()) show(now);
 }
 
 void CommandProgress::end() {
@@ -54,6 +58,7 @@ void CommandProgress::end() {
         known->steps += done;
     }
     mRunning.pop_back();
+    mEstimate.end();
     eraseLocked();
 }
 
@@ -73,10 +78,17 @@ void CommandProgress::eraseLocked() {
     mLineShown = false;
 }
 
-void CommandProgress::draw(Clock::time_point now) {
-    if (mRunning.empty()) return;
+void CommandProgress::show(Clock::time_point now) {
+    if (mRunning.empty() || mDisplay == ProgressDisplay::None) return;
     mNextDraw.store((now + kDrawInterval).time_since_epoch().count(), std::memory_order_relaxed);
-    const Running& running = mRunning.back();
+    if (mDisplay == ProgressDisplay::Bar) {
+        drawBar(mRunning.back(), now);
+    } else {
+        printPercent(now);
+    }
+}
+
+void CommandProgress::drawBar(const Running& running, Clock::time_point now) {
     std::string line = running.name;
     if (running.steps > 0) {
         const std::int64_t done = std::clamp<std::int64_t>(mDone.load(), 0, running.steps);
@@ -94,6 +106,47 @@ void CommandProgress::draw(Clock::time_point now) {
     std::fprintf(stderr, "\r%s\033[K", line.c_str());
     std::fflush(stderr);
     mLineShown = true;
+}
+
+void CommandProgress::printPercent(Clock::time_point now) {
+    if (now < mNextPercent) return;
+    double part = 0;
+    if (const auto open = mEstimate.openStage()) {
+        // What an outer stage has done is kept by the one within it.
+        const std::int64_t done =
+            *open + 1 < mRunning.size() ? mRunning[*open + 1].outerDone : mDone.load();
+        const std::int64_t steps = mRunning[*open].steps;
+        if (steps > 0) part = static_cast<double>(done) / static_cast<double>(steps);
+    }
+    const double whole =
+        (static_cast<double>(mPart) + mEstimate.at(part)) / static_cast<double>(mParts);
+    const int percent = std::min(static_cast<int>(100 * whole), kLastPercent);
+    if (percent <= mPercent) return;
+    mNextPercent = now + kPrintInterval;
+    printLine(percent);
+}
+
+void CommandProgress::printLine(int percent) {
+    mPercent = percent;
+    std::fprintf(stderr, "Progress: %d%%\n", percent);
+}
+
+void CommandProgress::expect(const std::vector<ExpectedStage>& stages) {
+    const std::scoped_lock lock(mMutex);
+    mExpected = stages;
+    mEstimate.expect(mExpected);
+}
+
+void CommandProgress::beginPart(std::size_t index, std::size_t count) {
+    const std::scoped_lock lock(mMutex);
+    mPart = index;
+    mParts = count;
+    mEstimate.expect(mExpected);
+}
+
+void CommandProgress::showDone() {
+    const std::scoped_lock lock(mMutex);
+    if (mDisplay == ProgressDisplay::Lines && mPercent < 100) printLine(100);
 }
 
 }  // namespace bandvox::app

@@ -1,5 +1,6 @@
 #include "command_run.h"
 
+#include "progress_plans.h"
 #include "standard_streams.h"
 #include "words.h"
 
@@ -13,7 +14,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <fstream>
+#include <map>
 #include <utility>
 
 namespace bandvox::app {
@@ -24,19 +27,20 @@ namespace {
 
 constexpr int kMostThreads = 4096;
 
-bool wantsProgress(const CommandLine& line) {
-    switch (line.choice("progress", {"auto", "always", "never"}, 0)) {
-        case 1:
-            return true;
-        case 2:
-            return false;
-        default:
-            return isatty(STDERR_FILENO) != 0 && !line.has("quiet");
-    }
+ProgressDisplay displayFor(const CommandLine& line) {
+    const std::size_t choice = line.choice("progress", {"auto", "always", "never"}, 0);
+    const bool isTerminal = isatty(STDERR_FILENO) != 0;
+    // A report is soon made, and who reads it wants no other lines.
+    const bool hasOutput = findOption(line.table(), "output") != nullptr;
+    const bool isWanted =
+        choice == 1 || (choice == 0 && !line.has("quiet") && (isTerminal || hasOutput));
+    if (!isWanted) return ProgressDisplay::None;
+    return isTerminal ? ProgressDisplay::Bar : ProgressDisplay::Lines;
 }
 
 /// True if writing one of them changes the other.
 bool isSameFile(const fs::path& a, const fs::path& b) {
+    if (a.empty() || b.empty()) return false;
     std::error_code error;
     const fs::path first = followLinks(a);
     const fs::path second = followLinks(b);
@@ -55,7 +59,7 @@ void requireDistinctFiles(const CommandLine& line) {
     for (std::size_t i = 0; i < line.positionals().size(); ++i) {
         files.emplace_back(table[std::min(i, table.size() - 1)].name, line.positional(i));
     }
-    for (const std::string option : {"environment", "camera-file"}) {
+    for (const std::string option : {"environment", "camera-file", "onto", "like", "config"}) {
         if (const auto given = line.text(option)) files.emplace_back("--" + option, *given);
     }
     for (const std::string option : {"output", "stats"}) {
@@ -72,7 +76,37 @@ void requireDistinctFiles(const CommandLine& line) {
     }
 }
 
+nlohmann::ordered_json stagesAsJson(const std::vector<StageTime>& stages) {
+    auto list = nlohmann::ordered_json::array();
+    for (const StageTime& stage : stages) {
+        list.push_back({{"name", stage.name}, {"seconds", stage.seconds}, {"steps", stage.steps}});
+    }
+    return list;
+}
+
 }  // namespace
+
+struct CommandRun::Frames {
+    std::size_t count = 0;
+    int now = 0;
+    double start = 0;
+    std::int64_t totalBytes = 0;  // of the frames before the present one
+    std::map<std::string, int> results;
+    std::vector<StageTime> stages;  // of all frames, added up
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+
+    void add(const StageTime& stage) {
+        const auto known = std::find_if(stages.begin(), stages.end(), [&](const StageTime& other) {
+            return other.name == stage.name;
+        });
+        if (known == stages.end()) {
+            stages.push_back(stage);
+        } else {
+            known->seconds += stage.seconds;
+            known->steps += stage.steps;
+        }
+    }
+};
 
 CommandRun::CommandRun(const CommandLine& line)
     : mCommand(line.table().name),
@@ -80,22 +114,32 @@ CommandRun::CommandRun(const CommandLine& line)
       mQuiet(line.has("quiet")),
       mVerbose(line.has("verbose")),
       mStrict(line.has("strict")),
-      mProgress(wantsProgress(line)),
+      mProgress(displayFor(line)),
       mThreads(line.wholeNumber("threads", 0, kMostThreads, 0)),
-      mCounts(std::make_unique<nlohmann::json>(nlohmann::json::object())) {
+      mCounts(std::make_unique<nlohmann::json>(nlohmann::json::object())),
+      mExceptions(std::uncaught_exceptions()) {
     if (mQuiet && mVerbose) {
         throw Error(ErrorKind::Usage, "--quiet and --verbose exclude each other");
     }
+    mProgress.expect(expectedStages(line));
     requireDistinctFiles(line);
     if (const auto path = line.text("stats")) mStatistics = std::make_unique<AtomicFile>(*path);
 }
 
-CommandRun::~CommandRun() = default;
+CommandRun::~CommandRun() {
+    // What a command still says when it has finished can fail, too.
+    if (mFinished && std::uncaught_exceptions() <= mExceptions) mProgress.showDone();
+}
 
 void CommandRun::say(const std::string& message) {
     if (mQuiet) return;
     mProgress.erase();
     std::fprintf(stderr, "%s\n", printable(message).c_str());
+}
+
+void CommandRun::sayError(const std::string& message) {
+    mProgress.erase();
+    std::fprintf(stderr, "bandvox: error: %s\n", printable(message).c_str());
 }
 
 void CommandRun::sayMore(const std::string& message) {
@@ -105,8 +149,9 @@ void CommandRun::sayMore(const std::string& message) {
 void CommandRun::warn(const std::vector<std::string>& warnings, ErrorKind strictKind) {
     if (warnings.empty()) return;
     mProgress.erase();
+    const std::string place = mFrames ? "frame " + std::to_string(mFrames->now) + ": " : "";
     for (const std::string& warning : warnings) {
-        std::fprintf(stderr, "bandvox: warning: %s\n", printable(warning).c_str());
+        std::fprintf(stderr, "bandvox: warning: %s\n", printable(place + warning).c_str());
     }
     if (mStrict) {
         const auto count = static_cast<std::int64_t>(warnings.size());
@@ -147,6 +192,7 @@ void CommandRun::writePart(AtomicFile& output, const std::function<void(AtomicFi
 }
 
 void CommandRun::writeOutput(AtomicFile& output, const std::function<void(AtomicFile&)>& write) {
+    if (mFrames) return writePart(output, write);
     const std::string size = writeFile(output, write);
     // Both files are whole and on the disk before either of them gets its name, and the output
     // gets it last: there is none without the statistics that were asked for.
@@ -159,13 +205,57 @@ void CommandRun::writeOutput(AtomicFile& output, const std::function<void(Atomic
     if (mStatistics) mStatistics->commit();
     output.commit();
     sayWritten(output, size);
+    mFinished = true;
 }
 
 void CommandRun::finish() {
     mProgress.throwIfInterrupted();
-    if (!mStatistics) return;
-    writeStatistics();
-    mStatistics->commit();
+    if (mStatistics) {
+        writeStatistics();
+        mStatistics->commit();
+    }
+    mFinished = true;
+}
+
+void CommandRun::finishFailed() {
+    finish();
+    mFinished = false;
+}
+
+void CommandRun::skip(const std::string& output, const std::string& why) {
+    mSkipped = true;
+    say("skipped  " + output + ": " + why);
+    count("skipped", true);
+    if (!mFrames) finish();
+}
+
+void CommandRun::beginFrames(std::size_t count) {
+    mFrames = std::make_unique<Frames>();
+    mFrames->count = count;
+}
+
+void CommandRun::beginFrame(int frame) {
+    mProgress.beginPart(mFrames->list.size(), mFrames->count);
+    mProgress.takeStages();
+    mFrames->now = frame;
+    mFrames->start = seconds();
+    mFrames->totalBytes += mOutputBytes;
+    mOutputBytes = 0;
+    mSkipped = false;
+    *mCounts = nlohmann::json::object();
+}
+
+void CommandRun::endFrame(const std::string& result, const nlohmann::json& more) {
+    nlohmann::ordered_json entry;
+    entry["frame"] = mFrames->now;
+    entry["result"] = result;
+    for (const auto& [name, value] : more.items()) entry[name] = value;
+    entry["seconds"] = seconds() - mFrames->start;
+    entry["stages"] = stagesAsJson(mProgress.stages());
+    entry["counts"] = *mCounts;
+    mFrames->list.push_back(std::move(entry));
+    for (const StageTime& stage : mProgress.takeStages()) mFrames->add(stage);
+    ++mFrames->results[result];
 }
 
 double CommandRun::seconds() const {
@@ -179,12 +269,18 @@ void CommandRun::writeStatistics() {
     statistics["threads"] = threadCount();
     statistics["seconds"] = seconds();
     statistics["peak_memory_bytes"] = peakMemory();
-    statistics["stages"] = nlohmann::ordered_json::array();
-    for (const StageTime& stage : mProgress.stages()) {
-        statistics["stages"].push_back(
-            {{"name", stage.name}, {"seconds", stage.seconds}, {"steps", stage.steps}});
+    statistics["stages"] = stagesAsJson(mFrames ? mFrames->stages : mProgress.stages());
+    if (mFrames) {
+        nlohmann::ordered_json counts;
+        for (const char* result : {"written", "skipped", "failed"}) {
+            counts[std::string("frames_") + result] = mFrames->results[result];
+        }
+        counts["output_bytes"] = mFrames->totalBytes + mOutputBytes;
+        statistics["counts"] = counts;
+        statistics["frames"] = mFrames->list;
+    } else {
+        statistics["counts"] = *mCounts;
     }
-    statistics["counts"] = *mCounts;
 
     std::ofstream file = mStatistics->open();
     file << statistics.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';

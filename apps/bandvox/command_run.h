@@ -31,10 +31,14 @@ class CommandRun {
     CommandRun& operator=(const CommandRun&) = delete;
 
     Progress& progress() { return mProgress; }
+    /// Part `index` of `count` of the command begins, each like the others.
+    void beginPart(std::size_t index, std::size_t count) { mProgress.beginPart(index, count); }
     bool verbose() const { return mVerbose; }
 
     /// Prints a line on the standard error, unless --quiet.
     void say(const std::string& message);
+    /// Prints an error on the standard error that does not end the command.
+    void sayError(const std::string& message);
     /// Prints a line on the standard error if --verbose.
     void sayMore(const std::string& message);
 
@@ -55,6 +59,22 @@ class CommandRun {
     /// with several.
     void finish();
 
+    /// The same, of a command that has failed in part.
+    void finishFailed();
+
+    /// From now on the command consists of `count` frames, and what is counted belongs to one of
+    /// them: writeOutput no longer finishes, and the statistics have a list of frames.
+    void beginFrames(std::size_t count);
+    /// Frame `frame` begins.
+    void beginFrame(int frame);
+    /// It ends with `result` ("written", "skipped", "failed"); what else the statistics are to say.
+    void endFrame(const std::string& result, const nlohmann::json& more);
+
+    /// There is nothing to be done for an output, and `why`. In place of writeOutput.
+    void skip(const std::string& output, const std::string& why);
+    /// True if skip was called for the present frame.
+    bool skipped() const { return mSkipped; }
+
     /// Since the command began.
     double seconds() const;
 
@@ -71,6 +91,13 @@ class CommandRun {
     std::int64_t mOutputBytes = 0;
     std::unique_ptr<AtomicFile> mStatistics;
     std::unique_ptr<nlohmann::json> mCounts;
+    int mExceptions;         // in flight when the run began
+    bool mFinished = false;  // all was done, but for what is said to the standard output
+
+    // Of a command that consists of frames.
+    struct Frames;
+    std::unique_ptr<Frames> mFrames;
+    bool mSkipped = false;
 };
 
 /// Writes a command's result to the standard output. A reader that has gone away is no failure;

@@ -2,12 +2,14 @@
 
 #include "command_run.h"
 #include "commands.h"
-#include "convert_solid.h"
+#include "convert_frames.h"
+#include "convert_grid_solid.h"
+#include "convert_job.h"
+#include "convert_settings.h"
 #include "convert_to_array.h"
-#include "convert_to_mesh.h"
 #include "convert_volume.h"
 #include "mesh_output.h"
-#include "solid_input.h"
+#include "output_kind.h"
 #include "stack_input.h"
 #include "volume_options.h"
 #include "words.h"
@@ -30,6 +32,7 @@ const CommandTable& convertTable() {
         };
         add(latticeEntries());
         add(stackEntries());
+        add(gridSolidEntries());
         add(filterEntries(density.filter));
         add({
             {"tolerance", 0, "E", formatNumber(density.tolerance),
@@ -58,7 +61,8 @@ const CommandTable& convertTable() {
             {"clamp", 0, "", "", "Limit the density to 0 .. 1, which cuts off ringing.", filter},
             {"iso", 0, "D", formatNumber(density.iso),
              "Value that is the surface, of a mesh or for the commands that come after. Of a .vdb "
-             "input it is the one stored there, else 0.5, and 0 of a level set.",
+             "input it is the one stored there, else 0.5, and 0 of a level set. volume: the value "
+             "that encloses the volume of the source.",
              filter},
             {"color", 0, "", "",
              "Write the colours of the mesh beside its density, as a grid Cd, or with the points "
@@ -70,8 +74,11 @@ const CommandTable& convertTable() {
              "Store 16-bit values, which changes densities by up to 2.5e-4, above 1 by 5e-4.",
              "Output"},
             compressionEntry(),
+            shardEntry(),
             adaptivityEntry(),
         });
+        add(outputKindEntries());
+        add(frameEntries());
         add(arrayOutputEntries());
         return CommandTable{
             "convert",
@@ -99,6 +106,10 @@ const CommandTable& convertTable() {
                  "The same on voxels four times as large."},
                 {"bandvox convert bunny.vdb -o levels.vdb --lod 3",
                  "With three coarser levels of detail."},
+                {"bandvox convert scan.nrrd -o bone.vdb --threshold 300 --factor 2",
+                 "What of a scan is above 300, on voxels twice as large."},
+                {"bandvox convert bunny.obj -o distances.vdb --as level-set",
+                 "Distances from the surface of that."},
                 {"bandvox convert spot.obj -o spot.vdb --color",
                  "The density, and the colours of the surface around it."},
                 {"bandvox convert spot.vdb -o spot.ply", "The surface of that, with its colours."},
@@ -108,19 +119,22 @@ const CommandTable& convertTable() {
                  "The density as images, 16 bits a pixel."},
                 {"bandvox convert part.stl -o part.vdb --voxel-size 0.1 --strict",
                  "Voxels of a given size, and no result if anything about the mesh is doubtful."},
-            }};
+                {"bandvox convert sim.####.obj -o sim.####.vdb --frames 1-100 --skip-existing",
+                 "A hundred frames, but for those that are done already."},
+            },
+            {{"resolution", "voxel-size", "factor", "onto"},
+             {"no-filter", "cutoff"},
+             {"no-filter", "order"}}};
     }();
     return table;
 }
 
-void runConvert(const CommandLine& line) {
-    if (convertsGridToMesh(line)) return convertGridToMesh(line);
-    const std::string& input = line.positional(0);
-    if (!isShape(input) && (extensionOf(input) == ".vdb" || isStackInput(input))) {
-        convertVolume(line);
-    } else {
-        convertSolid(line);
-    }
+void runConvert(const CommandLine& given) {
+    const CommandLine line = withLikedSettings(given);
+    if (asksForFrames(line)) return convertFrames(line);
+    CommandRun run(line);
+    ConvertJob job(run, line);
+    convertOne(job);
 }
 
 }  // namespace bandvox::app

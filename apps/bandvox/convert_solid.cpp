@@ -7,7 +7,10 @@
 #include "command_run.h"
 #include "convert_to_array.h"
 #include "convert_volume.h"
+#include "density_report.h"
+#include "iso_option.h"
 #include "mesh_output.h"
+#include "output_kind.h"
 #include "solid_input.h"
 #include "stack_input.h"
 #include "standard_streams.h"
@@ -54,11 +57,15 @@ struct ConvertRequest {
     DensityOptions density;
     bool color = false;
     int levels = 0;  ///< coarser ones beside the density
-    std::optional<int> oversample;
-    std::optional<double> samplingTolerance;  ///< if it was asked for
+    bool oversampleGiven = false;
+    int samplesPerSide = FieldDensityOptions().oversample;  // of the sampled route
+    int rowsPerVoxel = SoupDensityOptions().rowsPerVoxel;   // of that of the winding number
+    std::optional<double> samplingTolerance;                ///< if it was asked for
     VdbWriteOptions write;
     std::optional<MeshOutput> mesh;      ///< instead of the density
     std::unique_ptr<ArrayOutput> array;  ///< the same
+    IsoOption iso;
+    OutputKind kind;
 };
 
 void readRoute(const CommandLine& line, ConvertRequest& request) {
@@ -84,14 +91,16 @@ void readRoute(const CommandLine& line, ConvertRequest& request) {
                         "--oversample has no meaning on the exact route; expected "
                         "--route sampled with a shape, or another --route with a mesh");
         }
-        request.oversample = line.wholeNumber("oversample", 1, kMostOversample, 1);
+        request.oversampleGiven = true;
     }
+    request.samplesPerSide =
+        line.wholeNumber("oversample", 1, kMostOversample, request.samplesPerSide);
+    request.rowsPerVoxel = line.wholeNumber("oversample", 1, kMostOversample, request.rowsPerVoxel);
     // Sampling is by far the largest error, so what is allowed is allowed to it.
     DensityOptions& density = request.density;
-    if (!line.has("tolerance")) return;
     const double tolerance =
         line.number("tolerance", {.low = 1e-6, .high = 0.05}, density.tolerance);
-    request.samplingTolerance = tolerance;
+    if (line.has("tolerance")) request.samplingTolerance = tolerance;
     density.tolerance = isSampling ? std::min(density.tolerance, tolerance) : tolerance;
 }
 
@@ -104,7 +113,7 @@ ConvertRequest parseConvert(const CommandLine& line) {
     readStackRequest(line, request.input);  // refuses
     request.output = outputPath(output);
 
-    for (const char* name : {"grid", "background", "factor", "onto", "no-filter"}) {
+    for (const char* name : {"grid", "background", "factor", "onto", "no-filter", "threshold"}) {
         if (!line.has(name)) continue;
         throw Error(ErrorKind::Usage, std::string("option --") + name + " is for volumes, and '" +
                                           request.input + "' is none");
@@ -118,8 +127,14 @@ ConvertRequest parseConvert(const CommandLine& line) {
         throw Error(ErrorKind::Usage, "option --tile is '" + std::to_string(density.tile) +
                                           "'; expected an even number");
     }
-    density.iso =
-        line.number("iso", {.low = 0, .high = 1, .lowOpen = true, .highOpen = true}, density.iso);
+    const Range between{.low = 0, .high = 1, .lowOpen = true, .highOpen = true};
+    request.iso = readIso(line, between);
+    if (!request.iso.byVolume) density.iso = line.number("iso", between, density.iso);
+    if (asksForValues(line)) {
+        throw Error(ErrorKind::Usage, "--as values is for volumes, and '" + request.input +
+                                          "' is a solid; expected density, level-set or fog");
+    }
+    request.kind = readOutputKind(line).value_or(OutputKind());
     density.clamp = line.has("clamp");
     request.overlap = static_cast<Overlap>(line.choice("overlap", {"union", "sum"}, 0));
     density.sumOverlaps = request.overlap == Overlap::Sum;
@@ -130,6 +145,12 @@ ConvertRequest parseConvert(const CommandLine& line) {
                                           "' is a built-in shape, which has none");
     }
     request.levels = readDetailLevels(line);
+    density.shard = readShard(line);
+    if (!density.shard.isWhole() && request.kind.kind != OutputKind::Kind::Density) {
+        throw Error(ErrorKind::Usage,
+                    "--as level-set or fog needs the whole, and --shard asks for "
+                    "a part; convert what is merged");
+    }
     request.write.half = line.has("half");
     if (!request.array) request.write.compression = readCompression(line);
     return request;
@@ -166,47 +187,6 @@ std::string errorInWords(const ConvertRequest& request, const DensityResult& res
     return words;
 }
 
-void sayResult(CommandRun& run, const ConvertRequest& request, const DensityResult& result) {
-    const DensityMetadata& metadata = result.metadata;
-    const auto activeVoxels = static_cast<std::int64_t>(result.grid->activeVoxelCount());
-    const openvdb::Coord size = result.grid->evalActiveVoxelBoundingBox().dim();
-    run.say("grid     " + std::to_string(size.x()) + " x " + std::to_string(size.y()) + " x " +
-            std::to_string(size.z()) + " voxels of side " +
-            formatNumber(result.grid->voxelSize().x()) + ", " +
-            formatCount(activeVoxels, "active voxel", "active voxels") + ", density " +
-            formatNumber(result.minimum) + " to " + formatNumber(result.maximum));
-    run.sayMore(
-        "tiles    " + std::to_string(result.tiles) + " of side " + std::to_string(result.tileSide) +
-        " with a halo of " + std::to_string(result.halo) +
-        (result.fieldSamples > 0
-             ? ", from " + formatCount(result.fieldSamples, "sample", "samples")
-             : ", spread over " + std::to_string(result.kernelWidth) + " voxels from " +
-                   formatCount(result.surfaceSamples, "surface sample", "surface samples")));
-    run.say("error    " + errorInWords(request, result));
-    const double difference =
-        metadata.sourceVolume != 0
-            ? std::abs(metadata.gridVolume - metadata.sourceVolume) / metadata.sourceVolume
-            : 0;
-    run.say("volume   source " + formatNumber(metadata.sourceVolume, 8) + ", grid " +
-            formatNumber(metadata.gridVolume, 8) + ", relative difference " +
-            formatNumber(difference, 2));
-
-    run.count("active_voxels", activeVoxels);
-    run.count("surface_samples", result.surfaceSamples);
-    run.count("field_samples", result.fieldSamples);
-    run.count("tiles", result.tiles);
-    run.count("tile_side", result.tileSide);
-    run.count("halo", result.halo);
-    run.count("kernel_width", result.kernelWidth);
-    run.count("spread_thread_seconds", result.spreadSeconds);
-    run.count("transform_thread_seconds", result.transformSeconds);
-    run.count("closure_error", metadata.closureError);
-    run.count("sampling_error", metadata.samplingError);
-    run.count("storage_error", metadata.storageError);
-    run.count("source_volume", metadata.sourceVolume);
-    run.count("grid_volume", metadata.gridVolume);
-}
-
 /// What goes into the file.
 struct ConvertedGrids {
     DensityResult density;
@@ -222,7 +202,7 @@ DensityResult meshToDensity(CommandRun& run, const ConvertRequest& request, Mesh
     if (mesh.soup.triangles.empty()) {
         const MeshSource source(mesh.name, std::move(mesh.solid));
         result = surfaceToDensity(source, request.density, run.progress());
-        if (request.oversample) {
+        if (request.oversampleGiven) {
             result.warnings.push_back(
                 "--oversample was not used: caps close the whole mesh, which took the exact route");
         }
@@ -230,7 +210,7 @@ DensityResult meshToDensity(CommandRun& run, const ConvertRequest& request, Mesh
         SoupDensityOptions options;
         options.density = request.density;
         options.density.tolerance = std::min(options.density.tolerance, DensityOptions().tolerance);
-        options.rowsPerVoxel = request.oversample.value_or(options.rowsPerVoxel);
+        options.rowsPerVoxel = request.rowsPerVoxel;
         options.samplingTolerance = request.samplingTolerance.value_or(options.samplingTolerance);
         result = soupToDensity({mesh.name, std::move(mesh.soup), std::move(mesh.solid)}, options,
                                run.progress());
@@ -259,7 +239,7 @@ DensityResult shapeToDensity(CommandRun& run, const ConvertRequest& request) {
     }
     FieldDensityOptions options;
     options.density = request.density;
-    options.oversample = request.oversample.value_or(options.oversample);
+    options.oversample = request.samplesPerSide;
     options.samplingTolerance = request.samplingTolerance.value_or(options.samplingTolerance);
     DensityResult result = fieldToDensity(*makeShapeField(request.input), options, run.progress());
     // Of a shape, unlike other fields, the volume is known.
@@ -313,10 +293,11 @@ std::vector<openvdb::FloatGrid::Ptr> makeLevels(CommandRun& run, const ConvertRe
 
 }  // namespace
 
-void convertSolid(const CommandLine& line) {
-    const ConvertRequest request = parseConvert(line);
+void convertSolid(ConvertJob& job) {
+    const ConvertRequest request = parseConvert(job.line());
     requireMeshOrShape("convert", request.input);
-    CommandRun run(line);
+    if (!job.begin()) return;
+    CommandRun& run = job.run();
     std::optional<AtomicFile> output;
     if (!request.array) output.emplace(request.output);
 
@@ -330,21 +311,27 @@ void convertSolid(const CommandLine& line) {
         result.metadata.gridVolume = densityIntegral(*result.grid);
     }
     setDensityMetadata(*result.grid, result.metadata);
-    sayResult(run, request, result);
+    if (const auto iso = isoFor(run, request.iso, result.grid)) {
+        result.metadata.iso = *iso;
+        setDensityMetadata(*result.grid, result.metadata);
+    }
+    sayDensity(run, result, errorInWords(request, result));
     if (grids.color) sayColors(run, *grids.color);
     run.warn(result.warnings, ErrorKind::Result);
 
-    if (request.array) return request.array->write(run, *result.grid);
+    if (request.array) {
+        return request.array->write(run, *makeOutput(run, request.kind, result.grid));
+    }
     if (request.mesh) {
         const auto colors = grids.color ? grids.color->grid : nullptr;
-        return writeMeshOutput(run, *output, *request.mesh, result.grid, colors);
+        return writeMeshOutput(job, *output, *request.mesh, result.grid, colors);
     }
-    openvdb::GridCPtrVec written{result.grid};
+    openvdb::GridCPtrVec written{makeOutput(run, request.kind, result.grid)};
     if (request.levels > 0) {
         for (const auto& level : makeLevels(run, request, result.grid)) written.push_back(level);
     }
     if (grids.color) written.push_back(grids.color->grid);
-    run.writeOutput(*output, [&](AtomicFile& file) { writeVdb(file, written, request.write); });
+    job.writeVolume(*output, written, request.write);
 }
 
 }  // namespace bandvox::app

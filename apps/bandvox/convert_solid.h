@@ -1,10 +1,10 @@
 #pragma once
 
-#include "command_line.h"
+#include "convert_job.h"
 
 namespace bandvox::app {
 
 /// Runs `convert` for a mesh or a built-in shape.
-void convertSolid(const CommandLine& line);
+void convertSolid(ConvertJob& job);
 
 }  // namespace bandvox::app

@@ -4,6 +4,7 @@
 
 #include "choose_grid.h"
 #include "command_run.h"
+#include "iso_option.h"
 #include "mesh_output.h"
 #include "standard_streams.h"
 #include "words.h"
@@ -23,16 +24,18 @@ bool convertsGridToMesh(const CommandLine& line) {
            isWritableMesh(line.text("output").value_or(""));
 }
 
-void convertGridToMesh(const CommandLine& line) {
+void convertGridToMesh(ConvertJob& job) {
+    const CommandLine& line = job.line();
     refuseOptions(line,
                   {"resolution", "voxel-size", "cutoff", "order", "tolerance", "tile", "route",
                    "oversample", "overlap", "clamp", "half", "compression", "background", "factor",
-                   "onto", "no-filter", "lod"},
+                   "onto", "no-filter", "lod", "band"},
                   "where a mesh is made of a .vdb file, which is not filtered again");
     const std::string& input = line.positional(0);
     MeshOutput options = readMeshOutput(line);
-    if (line.has("iso")) options.iso = line.number("iso", {}, 0);
-    CommandRun run(line);
+    const IsoOption iso = readIso(line, {});
+    if (!job.begin()) return;
+    CommandRun& run = job.run();
     AtomicFile output(options.path);
 
     openvdb::GridPtrVec grids;
@@ -51,7 +54,8 @@ void convertGridToMesh(const CommandLine& line) {
                         "active voxels") +
             (colors ? ", with colours" : ""));
     grids.clear();
-    writeMeshOutput(run, output, options, grid, colors);
+    options.iso = isoFor(run, iso, grid);
+    writeMeshOutput(job, output, options, grid, colors);
 }
 
 }  // namespace bandvox::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "command_line.h"
+#include "convert_job.h"
 
 namespace bandvox::app {
 
@@ -8,6 +9,6 @@ namespace bandvox::app {
 bool convertsGridToMesh(const CommandLine& line);
 
 /// Runs such a command.
-void convertGridToMesh(const CommandLine& line);
+void convertGridToMesh(ConvertJob& job);
 
 }  // namespace bandvox::app

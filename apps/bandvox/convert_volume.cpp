@@ -5,7 +5,10 @@
 
 #include "choose_grid.h"
 #include "command_run.h"
+#include "convert_grid_solid.h"
 #include "convert_to_array.h"
+#include "iso_option.h"
+#include "lattice_request.h"
 #include "mesh_output.h"
 #include "stack_input.h"
 #include "standard_streams.h"
@@ -36,16 +39,6 @@ constexpr int kMostLevels = 16;
 // Options that say how a solid becomes a density.
 const char* const kOfSolids[] = {"route", "oversample", "overlap", "clamp", "color", "tile"};
 
-/// The lattice that grids are brought to: one of these, or none.
-struct LatticeRequest {
-    std::optional<int> resolution;
-    std::optional<double> voxelSize;
-    std::optional<double> factor;
-    std::optional<std::string> onto;
-
-    bool isSame() const { return !resolution && !voxelSize && !factor && !onto; }
-};
-
 struct VolumeRequest {
     std::string input;
     std::filesystem::path output;
@@ -54,35 +47,12 @@ struct VolumeRequest {
     float background = 0;  // of an array
     bool resamples = false;
     ResampleOptions resample;
-    std::optional<double> iso;
+    IsoOption iso;
     int levels = 0;
     StackRequest stack;
     std::unique_ptr<ArrayOutput> array;  // instead of a .vdb file
     VdbWriteOptions write;
 };
-
-LatticeRequest readLattice(const CommandLine& line) {
-    LatticeRequest lattice;
-    int count = 0;
-    for (const char* name : {"resolution", "voxel-size", "factor", "onto"}) {
-        if (line.has(name)) ++count;
-    }
-    if (count > 1) {
-        throw Error(ErrorKind::Usage,
-                    "expected one of --resolution, --voxel-size, --factor and --onto, but got " +
-                        std::to_string(count));
-    }
-    if (line.has("resolution")) {
-        lattice.resolution = line.wholeNumber("resolution", 1, 1 << 20, 1);
-    }
-    const Range positive{.low = 0, .lowOpen = true};
-    if (line.has("voxel-size")) lattice.voxelSize = line.number("voxel-size", positive, 1);
-    if (line.has("factor")) {
-        lattice.factor = line.number("factor", {.low = 0.01, .high = 1e4}, 1);
-    }
-    lattice.onto = line.text("onto");
-    return lattice;
-}
 
 VolumeRequest parseVolume(const CommandLine& line) {
     VolumeRequest request;
@@ -100,6 +70,7 @@ VolumeRequest parseVolume(const CommandLine& line) {
                                           " is for meshes and shapes, and '" + request.input +
                                           "' is a volume already");
     }
+    refuseOptions(line, {"band"}, "with the values of a volume");
     request.grid = line.text("grid");
     request.stack = readStackRequest(line, request.input);
     if (line.has("background") && !isStackInput(request.input)) {
@@ -124,50 +95,21 @@ VolumeRequest parseVolume(const CommandLine& line) {
     request.resample.tolerance =
         line.number("tolerance", {.low = 1e-6, .high = 0.05}, request.resample.tolerance);
     request.resamples = filters || !request.lattice.isSame();
-    if (line.has("iso")) {
-        request.iso = line.number("iso", {}, 0.5);
-    }
+    request.iso = readIso(line, {});
     request.levels = readDetailLevels(line);
+    request.resample.shard = readShard(line);
+    if (!request.resample.shard.isWhole() && !request.resamples) {
+        throw Error(ErrorKind::Usage,
+                    "--shard has no meaning where grids are copied; expected a new lattice");
+    }
     request.write.half = line.has("half");
     if (!request.array) request.write.compression = readCompression(line);
     return request;
 }
 
-// A lattice for a grid of any type.
-openvdb::math::Transform::Ptr targetFor(const openvdb::GridBase& grid,
-                                        const LatticeRequest& request,
-                                        const openvdb::math::Transform::ConstPtr& onto) {
-    if (onto) return onto->copy();
-    if (request.voxelSize) return uniformLattice(grid, *request.voxelSize);
-    if (request.resolution) {
-        const openvdb::Vec3d size =
-            grid.voxelSize() * grid.evalActiveVoxelBoundingBox().dim().asVec3d();
-        const double longest = std::max({size[0], size[1], size[2]});
-        return uniformLattice(grid, longest / *request.resolution);
-    }
-    auto target = grid.transform().copy();
-    if (request.factor) target->preScale(*request.factor);
-    return target;
-}
-
-openvdb::math::Transform::ConstPtr readOnto(const LatticeRequest& request) {
-    if (!request.onto) return nullptr;
-    const openvdb::GridPtrVec grids = readGrids(*request.onto);
-    if (grids.empty()) {
-        throw Error(ErrorKind::Input, "'" + *request.onto + "' has no grids, so no lattice");
-    }
-    return grids.front()->transformPtr();
-}
-
-std::string dimensionsOf(const openvdb::GridBase& grid) {
-    const openvdb::Coord size = grid.evalActiveVoxelBoundingBox().dim();
-    std::string text = std::to_string(size.x());
-    text += " x " + std::to_string(size.y()) + " x " + std::to_string(size.z());
-    return text;
-}
-
 void sayGrid(CommandRun& run, const openvdb::GridBase& grid) {
-    run.say("grid     " + grid.getName() + ": " + dimensionsOf(grid) + " voxels of side " +
+    run.say("grid     " + grid.getName() + ": " +
+            formatSize(grid.evalActiveVoxelBoundingBox().dim()) + " voxels of side " +
             formatNumber(grid.voxelSize().x()) + ", " +
             formatCount(static_cast<std::int64_t>(grid.activeVoxelCount()), "active voxel",
                         "active voxels"));
@@ -178,15 +120,30 @@ openvdb::GridPtrVec convertGrid(CommandRun& run, const VolumeRequest& request,
                                 const openvdb::GridBase::Ptr& grid,
                                 const openvdb::math::Transform::ConstPtr& onto) {
     openvdb::GridPtrVec result;
+    const Shard& shard = request.resample.shard;
     if (grid->activeVoxelCount() == 0 || (!request.resamples && request.levels == 0)) {
+        if (shard.index > 1) return {};
         return {grid};
     }
     const auto target = targetFor(*grid, request.lattice, onto);
     if (const auto vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grid)) {
         if (!request.resamples) return {grid};
-        return {resampleVectors(vectors, *target, request.resample, run.progress())};
+        // They are made whole, by the first machine.
+        if (shard.index > 1) return {};
+        ResampleOptions whole = request.resample;
+        whole.shard = {};
+        return {resampleVectors(vectors, *target, whole, run.progress())};
     }
     openvdb::FloatGrid::Ptr floats = asFloatGrid(grid);
+    // Filtered distances are none; those of the filtered solid are.
+    if (floats && floats->getGridClass() == openvdb::GRID_LEVEL_SET && request.resamples &&
+        request.resample.filter && request.levels == 0) {
+        if (!shard.isWhole()) {
+            throw Error(ErrorKind::Usage, "--shard has no meaning for the level set '" +
+                                              grid->getName() + "', which is rebuilt as a whole");
+        }
+        return {rebuildLevelSet(run, floats, {request.lattice, onto, request.resample})};
+    }
     if (!floats) {
         run.warn({"the grid '" + grid->getName() + "' of type " + grid->valueType() +
                   " was left away: it cannot be filtered"},
@@ -240,8 +197,13 @@ void setIso(openvdb::GridBase& grid, double iso) {
 }
 
 // Rounds to 16 bits, if that is asked for, and says so in the grid.
-void finishGrid(openvdb::GridBase& grid, const VolumeRequest& request) {
-    if (request.iso) setIso(grid, *request.iso);
+void finishGrid(CommandRun& run, const openvdb::GridBase::Ptr& converted,
+                const VolumeRequest& request) {
+    openvdb::GridBase& grid = *converted;
+    if (densityMetadata(grid)) {
+        const auto density = openvdb::gridPtrCast<openvdb::FloatGrid>(converted);
+        if (const auto iso = isoFor(run, request.iso, density)) setIso(grid, *iso);
+    }
     auto* floats = dynamic_cast<openvdb::FloatGrid*>(&grid);
     if (!floats || !request.write.half) return;
     const double change = roundToHalf(*floats);
@@ -277,9 +239,10 @@ int readDetailLevels(const CommandLine& line) {
     return line.wholeNumber("lod", 0, kMostLevels, 0);
 }
 
-void convertVolume(const CommandLine& line) {
-    const VolumeRequest request = parseVolume(line);
-    CommandRun run(line);
+void convertVolume(ConvertJob& job) {
+    const VolumeRequest request = parseVolume(job.line());
+    if (!job.begin()) return;
+    CommandRun& run = job.run();
     std::optional<AtomicFile> output;
     if (!request.array) output.emplace(request.output);
     const openvdb::math::Transform::ConstPtr onto = readOnto(request.lattice);
@@ -290,7 +253,7 @@ void convertVolume(const CommandLine& line) {
     std::int64_t activeVoxels = 0;
     for (openvdb::GridBase::Ptr& grid : grids) {
         for (const auto& converted : convertGrid(run, request, grid, onto)) {
-            finishGrid(*converted, request);
+            finishGrid(run, converted, request);
             sayGrid(run, *converted);
             activeVoxels += static_cast<std::int64_t>(converted->activeVoxelCount());
             written.push_back(converted);
@@ -299,14 +262,14 @@ void convertVolume(const CommandLine& line) {
     }
     run.count("grids", written.size());
     run.count("active_voxels", activeVoxels);
-    if (activeVoxels == 0) {
+    if (activeVoxels == 0 && request.resample.shard.isWhole()) {
         throw Error(ErrorKind::Result, "nothing would be written: no grid of '" + request.input +
                                            "' has active voxels that are left");
     }
     if (request.array) {
         return request.array->write(run, dynamic_cast<const openvdb::FloatGrid&>(*written.front()));
     }
-    run.writeOutput(*output, [&](AtomicFile& file) { writeVdb(file, written, request.write); });
+    job.writeVolume(*output, written, request.write);
 }
 
 }  // namespace bandvox::app

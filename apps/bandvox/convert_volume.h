@@ -1,6 +1,7 @@
 #pragma once
 
 #include "command_line.h"
+#include "convert_job.h"
 #include "option_table.h"
 
 #include <vector>
@@ -14,6 +15,6 @@ std::vector<OptionEntry> latticeEntries();
 int readDetailLevels(const CommandLine& line);
 
 /// Runs `convert` for a .vdb file or an array: copies its grids, or brings them to another lattice.
-void convertVolume(const CommandLine& line);
+void convertVolume(ConvertJob& job);
 
 }  // namespace bandvox::app

@@ -1,5 +1,6 @@
 #include "frame_pattern.h"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <filesystem>
@@ -53,7 +54,6 @@ std::vector<int> FrameRange::numbers() const {
 }
 
 std::optional<FrameRange> parseFrames(const std::string& text) {
-    constexpr int kMostFrames = 1000000;
     const char* at = text.data();
     const char* const end = at + text.size();
     FrameRange range{0, 0, 1};
@@ -63,7 +63,7 @@ std::optional<FrameRange> parseFrames(const std::string& text) {
         if (!readNumber(++at, end, range.last)) return std::nullopt;
         if (at != end && *at == 'x' && !readNumber(++at, end, range.step)) return std::nullopt;
     }
-    if (at != end || range.last < range.first || range.step < 1 || range.last > kMostFrames) {
+    if (at != end || range.last < range.first || range.step < 1 || range.last > kMostFrame) {
         return std::nullopt;
     }
     return range;
@@ -82,6 +82,33 @@ std::string withFrame(const std::string& name, int frame) {
         number.insert(0, static_cast<std::size_t>(place->digits) - number.size(), '0');
     }
     return name.substr(0, place->begin) + number + name.substr(place->begin + place->length);
+}
+
+std::vector<int> framesOnDisk(const std::string& name) {
+    const auto place = findPlace(name);
+    if (!place) return {};
+    const std::filesystem::path pattern = name;
+    const std::size_t start = name.size() - pattern.filename().string().size();
+    const std::string before = name.substr(start, place->begin - start);
+    const std::string after = name.substr(place->begin + place->length);
+    const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
+    std::vector<int> frames;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        const std::string found = entry.path().filename().string();
+        if (found.size() <= before.size() + after.size() || !found.starts_with(before) ||
+            !found.ends_with(after)) {
+            continue;
+        }
+        const char* at = found.data() + before.size();
+        const char* const end = found.data() + found.size() - after.size();
+        int frame = 0;
+        if (!readNumber(at, end, frame) || at != end || frame > kMostFrame) continue;
+        // Of 7, 07 and 007 one is meant.
+        if (withFrame(name, frame).substr(start) == found) frames.push_back(frame);
+    }
+    std::sort(frames.begin(), frames.end());
+    return frames;
 }
 
 }  // namespace bandvox::app

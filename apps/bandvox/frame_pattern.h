@@ -24,4 +24,11 @@ bool hasFrame(const std::string& name);
 /// without such a place stay as they are.
 std::string withFrame(const std::string& name, int frame);
 
+/// The numbers of the frames of a name that has a place for one which are there as files, in
+/// order; at most kMostFrame.
+std::vector<int> framesOnDisk(const std::string& name);
+
+/// The largest number of a frame.
+inline constexpr int kMostFrame = 1000000;
+
 }  // namespace bandvox::app

@@ -1,5 +1,6 @@
 #include "grid_report.h"
 
+#include "option_values.h"
 #include "report_words.h"
 #include "words.h"
 
@@ -49,8 +50,19 @@ Json toJson(const openvdb::Metadata& metadata) {
 void appendBlock(std::string& out, const std::string& name, const Json& values) {
     if (values.empty()) return;
     out += "  " + name + '\n';
-    for (const auto& [key, value] : values.items())
-        out += "    " + printable(key) + ": " + inWords(value) + '\n';
+    for (const auto& [key, value] : values.items()) {
+        out += "    " + printable(key) + ":";
+        const bool hasLines = value.is_string() &&
+                              value.get_ref<const std::string&>().find('\n') != std::string::npos;
+        if (!hasLines) {
+            out += ' ' + inWords(value) + '\n';
+            continue;
+        }
+        out += '\n';
+        for (const std::string_view line : split(value.get_ref<const std::string&>(), '\n')) {
+            out += "      " + printable(std::string(line)) + '\n';
+        }
+    }
 }
 
 std::string gridInWords(const Json& grid) {

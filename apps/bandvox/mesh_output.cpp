@@ -102,9 +102,10 @@ std::optional<MeshOutput> readVdbOrMeshOutput(const CommandLine& line) {
     return readMeshOutput(line);
 }
 
-void writeMeshOutput(CommandRun& run, AtomicFile& output, const MeshOutput& options,
+void writeMeshOutput(const ConvertJob& job, AtomicFile& output, const MeshOutput& options,
                      const openvdb::FloatGrid::ConstPtr& grid,
                      const openvdb::Vec3SGrid::ConstPtr& colors) {
+    CommandRun& run = job.run();
     MeshOptions mesh;
     mesh.iso = options.iso;
     mesh.adaptivity = options.adaptivity;
@@ -112,6 +113,7 @@ void writeMeshOutput(CommandRun& run, AtomicFile& output, const MeshOutput& opti
     MeshResult result = densityToMesh(grid, mesh, run.progress());
     sayMesh(run, result);
     run.warn(result.warnings, ErrorKind::Result);
+    result.surface.notes = toNotes(job.stamp());
     run.writeOutput(output,
                     [&](AtomicFile& file) { writeMesh(file, result.surface, run.progress()); });
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "command_line.h"
-#include "command_run.h"
+#include "convert_job.h"
 #include "option_table.h"
 
 #include <openvdb/openvdb.h>
@@ -38,9 +38,9 @@ MeshOutput readMeshOutput(const CommandLine& line);
 /// for anything else that is no device or pipe, and for options that have no meaning with it.
 std::optional<MeshOutput> readVdbOrMeshOutput(const CommandLine& line);
 
-/// Makes a mesh of the grid's surface, says and counts what came of it, and writes it. The last
-/// step of a command. `colors`: a grid of them, or null.
-void writeMeshOutput(CommandRun& run, AtomicFile& output, const MeshOutput& options,
+/// Makes a mesh of the grid's surface, says and counts what came of it, and writes it, with the
+/// job's stamp. The last step of a command. `colors`: a grid of them, or null.
+void writeMeshOutput(const ConvertJob& job, AtomicFile& output, const MeshOutput& options,
                      const openvdb::FloatGrid::ConstPtr& grid,
                      const openvdb::Vec3SGrid::ConstPtr& colors);
 

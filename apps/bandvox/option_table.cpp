@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <numeric>
 #include <sstream>
 
@@ -101,7 +102,12 @@ const std::vector<OptionEntry>& sharedOptions() {
         {"quiet", 'q', "", "", "Say nothing but warnings and errors.", kSharedGroup},
         {"verbose", 'v', "", "", "Say more: every hole, every warning, times.", kSharedGroup},
         {"progress", 0, "WHEN", "auto",
-         "Show how far the work is: auto (on a terminal), always or never.", kSharedGroup},
+         "Show how far the work is, on a terminal as a bar, else as lines \"Progress: 42%\": auto "
+         "(not with --quiet, and lines only where there is an output), always or never.",
+         kSharedGroup},
+        {"config", 0, "FILE", "",
+         "Read options from FILE, one \"name = value\" a line; the command line wins over it.",
+         kSharedGroup},
         {"stats", 0, "FILE", "",
          "Write seconds and counts of each stage and the peak memory to FILE, as JSON.",
          kSharedGroup},
@@ -116,6 +122,35 @@ std::vector<OptionEntry> allOptions(const CommandTable& table) {
     std::vector<OptionEntry> options = table.options;
     options.insert(options.end(), sharedOptions().begin(), sharedOptions().end());
     return options;
+}
+
+const OptionEntry* findOption(const CommandTable& table, const std::string& name) {
+    for (const auto* options : {&table.options, &sharedOptions()}) {
+        for (const OptionEntry& option : *options) {
+            if (option.name == name) return &option;
+        }
+    }
+    return nullptr;
+}
+
+std::vector<std::string> ruledOut(const CommandTable& table, const std::string& option) {
+    std::vector<std::string> others;
+    const auto addFrom = [&](const std::vector<std::string>& group) {
+        if (std::find(group.begin(), group.end(), option) == group.end()) return;
+        std::copy_if(group.begin(), group.end(), std::back_inserter(others),
+                     [&](const std::string& other) { return other != option; });
+    };
+    addFrom({"quiet", "verbose"});
+    for (const auto& group : table.exclusive) addFrom(group);
+    return others;
+}
+
+std::string suggestionFor(const CommandTable& table, const std::string& name) {
+    std::vector<std::string> names;
+    for (const OptionEntry& option : allOptions(table)) names.push_back(option.name);
+    const std::string nearest = nearestName(name, names);
+    return nearest.empty() ? "'bandvox " + table.name + " --help' lists them all"
+                           : "did you mean '--" + nearest + "'?";
 }
 
 std::string helpText(const CommandTable& table) {
@@ -165,7 +200,7 @@ std::string overviewText(const std::vector<const CommandTable*>& tables) {
         "  4    the result would be empty or worse than the tolerance asked for\n"
         "  5    not enough memory\n"
         "  130  interrupted\n"
-        "Nothing is written unless the status is 0.\n";
+        "Nothing is written unless the status is 0, but for frames that are done.\n";
     return out;
 }
 

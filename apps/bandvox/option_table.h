@@ -38,13 +38,25 @@ struct CommandTable {
     std::vector<PositionalEntry> positionals;  ///< each of them at least once
     std::vector<OptionEntry> options;          ///< its own, without the shared ones
     std::vector<ExampleEntry> examples;
+    /// Groups of options of which one rules the others out: given on the command line, it puts
+    /// aside those that a file of options gives.
+    std::vector<std::vector<std::string>> exclusive = {};
 };
+
+/// The options that `option` rules out, as the table's groups and those of the shared options say.
+std::vector<std::string> ruledOut(const CommandTable& table, const std::string& option);
+
+/// The entry of an option by its name, or null.
+const OptionEntry* findOption(const CommandTable& table, const std::string& name);
 
 /// The options that every command takes.
 const std::vector<OptionEntry>& sharedOptions();
 
 /// A command's own options followed by the shared ones.
 std::vector<OptionEntry> allOptions(const CommandTable& table);
+
+/// What to say of a name that no option has: "; did you mean ...?", or where they are listed.
+std::string suggestionFor(const CommandTable& table, const std::string& name);
 
 /// What `bandvox COMMAND --help` prints.
 std::string helpText(const CommandTable& table);

@@ -56,20 +56,34 @@ std::string Range::text() const {
 }
 
 void OptionValues::fail(const std::string& name, const std::string& expected) const {
-    const auto found = mValues.find(name);
-    throw Error(mKind, mTitle + name + " is '" + (found == mValues.end() ? "" : found->second) +
-                           "'; expected " + expected);
+    std::string message;
+    const auto origin = mOrigins.find(name);
+    if (origin != mOrigins.end() && !origin->second.empty()) message = origin->second + ": ";
+    message += mTitle + name;
+    message += " is '" + found(name).value_or("") + "'; expected " + expected;
+    throw Error(mKind, message);
+}
+
+std::optional<std::string> OptionValues::found(const std::string& name) const {
+    for (const auto* values : {&mValues, &mDefaults}) {
+        const auto entry = values->find(name);
+        if (entry != values->end()) return entry->second;
+    }
+    return std::nullopt;
 }
 
 std::optional<std::string> OptionValues::text(const std::string& name) const {
-    const auto found = mValues.find(name);
-    if (found == mValues.end()) return std::nullopt;
-    if (found->second.empty()) fail(name, "a value that is not empty");
-    return found->second;
+    return has(name) ? textOrDefault(name) : std::nullopt;
+}
+
+std::optional<std::string> OptionValues::textOrDefault(const std::string& name) const {
+    auto value = found(name);
+    if (value && value->empty()) fail(name, "a value that is not empty");
+    return value;
 }
 
 double OptionValues::number(const std::string& name, const Range& range, double fallback) const {
-    const auto given = text(name);
+    const auto given = textOrDefault(name);
     if (!given) return fallback;
     const auto value = parseNumber(*given);
     if (!value || !range.contains(*value)) fail(name, "a number" + range.text());
@@ -77,7 +91,7 @@ double OptionValues::number(const std::string& name, const Range& range, double 
 }
 
 int OptionValues::wholeNumber(const std::string& name, int low, int high, int fallback) const {
-    const auto given = text(name);
+    const auto given = textOrDefault(name);
     if (!given) return fallback;
     const auto value = parseWhole(*given);
     if (!value || *value < low || *value > high) {
@@ -88,7 +102,7 @@ int OptionValues::wholeNumber(const std::string& name, int low, int high, int fa
 
 std::optional<openvdb::Vec3d> OptionValues::vector(const std::string& name,
                                                    const Range& range) const {
-    const auto given = text(name);
+    const auto given = textOrDefault(name);
     if (!given) return std::nullopt;
     const std::vector<std::string_view> parts = split(*given, ',');
     openvdb::Vec3d vector(0.0);
@@ -107,7 +121,7 @@ std::optional<openvdb::Vec3d> OptionValues::vector(const std::string& name,
 std::optional<std::vector<int>> OptionValues::wholeNumbers(const std::string& name,
                                                            std::size_t count,
                                                            char separator) const {
-    const auto given = text(name);
+    const auto given = textOrDefault(name);
     if (!given) return std::nullopt;
     std::vector<int> numbers;
     for (const std::string_view part : split(*given, separator)) {
@@ -121,7 +135,7 @@ std::optional<std::vector<int>> OptionValues::wholeNumbers(const std::string& na
 }
 
 std::optional<openvdb::Vec2i> OptionValues::size(const std::string& name, int low, int high) const {
-    const auto given = text(name);
+    const auto given = textOrDefault(name);
     if (!given) return std::nullopt;
     const std::vector<std::string_view> parts = split(*given, 'x');
     std::optional<int> width, height;
@@ -141,7 +155,7 @@ std::optional<openvdb::Vec2i> OptionValues::size(const std::string& name, int lo
 
 std::size_t OptionValues::choice(const std::string& name, const std::vector<std::string>& choices,
                                  std::size_t fallback) const {
-    const auto given = text(name);
+    const auto given = textOrDefault(name);
     if (!given) return fallback;
     for (std::size_t i = 0; i < choices.size(); ++i) {
         if (*given == choices[i]) return i;
@@ -151,7 +165,7 @@ std::size_t OptionValues::choice(const std::string& name, const std::vector<std:
 
 std::vector<bool> OptionValues::choices(const std::string& name,
                                         const std::vector<std::string>& choices) const {
-    const auto given = text(name);
+    const auto given = textOrDefault(name);
     if (!given) return std::vector<bool>(choices.size(), true);
     std::vector<bool> chosen(choices.size(), false);
     for (const std::string_view part : split(*given, ',')) {

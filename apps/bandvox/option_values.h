@@ -39,8 +39,18 @@ class OptionValues {
     explicit OptionValues(std::string title = "option --", ErrorKind kind = ErrorKind::Usage)
         : mTitle(std::move(title)), mKind(kind) {}
 
-    /// A flag's value is empty.
-    void set(const std::string& name, const std::string& value) { mValues[name] = value; }
+    /// A flag's value is empty. `origin`: where it stands if that is worth telling, as "file:3".
+    void set(const std::string& name, const std::string& value, const std::string& origin = {}) {
+        mValues[name] = value;
+        mOrigins[name] = origin;
+    }
+
+    /// What a reading with a fallback gives for a setting that was not given, instead of that. For
+    /// has() and text() it stays one that was not given.
+    void setDefault(const std::string& name, const std::string& value, const std::string& origin) {
+        mDefaults[name] = value;
+        if (!has(name)) mOrigins[name] = origin;
+    }
 
     const std::map<std::string, std::string>& all() const { return mValues; }
     const std::string& title() const { return mTitle; }
@@ -49,6 +59,8 @@ class OptionValues {
     bool has(const std::string& name) const { return mValues.contains(name); }
     /// The text given, or nothing.
     std::optional<std::string> text(const std::string& name) const;
+    /// The same, or what setDefault has set.
+    std::optional<std::string> textOrDefault(const std::string& name) const;
 
     double number(const std::string& name, const Range& range, double fallback) const;
     int wholeNumber(const std::string& name, int low, int high, int fallback) const;
@@ -71,9 +83,13 @@ class OptionValues {
     [[noreturn]] void fail(const std::string& name, const std::string& expected) const;
 
   private:
+    std::optional<std::string> found(const std::string& name) const;
+
     std::string mTitle;
     ErrorKind mKind;  // of failures
     std::map<std::string, std::string> mValues;
+    std::map<std::string, std::string> mDefaults;
+    std::map<std::string, std::string> mOrigins;
 };
 
 /// The parts of a text between separators.

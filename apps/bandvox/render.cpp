@@ -164,7 +164,9 @@ void drawSequence(CommandRun& run, const RenderRequest& request) {
     std::optional<Scene> scene;
     std::vector<CameraOptions> cameras;
     const bool hasInputFrames = hasFrames(request.scene);
-    for (const int frame : request.frames) {
+    for (std::size_t i = 0; i < request.frames.size(); ++i) {
+        const int frame = request.frames[i];
+        run.beginPart(i, request.frames.size());
         if (!scene || hasInputFrames) {
             scene = loadScene(run, request.scene, frame);
             if (request.turns > 0) cameras = turntable(*scene, request.picture, request.turns);

@@ -27,6 +27,13 @@ std::string formatVector(const openvdb::Vec3d& vector, int digits) {
            formatNumber(vector.z(), digits) + ")";
 }
 
+std::string formatSize(const openvdb::Coord& size) {
+    std::string text = std::to_string(size.x());
+    text += " x " + std::to_string(size.y());
+    text += " x " + std::to_string(size.z());
+    return text;
+}
+
 std::string formatBytes(std::int64_t bytes) {
     if (bytes < 1000) return std::to_string(bytes) + " bytes";
     constexpr std::array kUnits{"kB", "MB", "GB", "TB"};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <openvdb/Types.h>
+#include <openvdb/math/Coord.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +15,9 @@ std::string formatNumber(double value, int digits = 6);
 
 /// "(x, y, z)".
 std::string formatVector(const openvdb::Vec3d& vector, int digits = 6);
+
+/// "2 x 3 x 4".
+std::string formatSize(const openvdb::Coord& size);
 
 /// A size with a unit that keeps it readable: "512 bytes", "3.2 MB" (powers of ten).
 std::string formatBytes(std::int64_t bytes);

@@ -233,7 +233,7 @@ TEST_F(BadInput, StatisticsWhoseNameIsTakenMeanwhile) {
     // A folder takes the statistics' name once the work has begun, so that they cannot get it.
     RunOptions options{.folder = mFolder.path()};
     options.signalWhen = [this](const std::string& said) {
-        if (said.find('\r') != std::string::npos) {
+        if (said.find("Progress: ") != std::string::npos) {
             std::filesystem::create_directory(mFolder / "s.json");
         }
         return 0;

@@ -106,13 +106,13 @@ TEST(Info, WritesControlCharactersOut) {
     const std::string shown = "'two\\nlines\\x1b[31m'";
     const RunResult info = runBandvox({"info", "odd.vdb"}, here);
     EXPECT_NE(info.out.find(shown), std::string::npos) << info.out;
-    const RunResult drawn =
-        runBandvox({"render", "odd.vdb", "-o", "odd.png", "--res", "8x8"}, here);
+    const RunResult drawn = runBandvox(
+        {"render", "odd.vdb", "-o", "odd.png", "--res", "8x8", "--progress", "never"}, here);
     EXPECT_EQ(drawn.status, 0) << drawn.err;
     EXPECT_EQ(countLines(drawn.err, ""), 3) << drawn.err;
     EXPECT_NE(drawn.err.find(shown), std::string::npos) << drawn.err;
     const RunResult failed =
-        runBandvox({"render", "odd.vdb", "-o", "odd.png", "--grid", "none"}, here);
+        runBandvox({"render", "odd.vdb", "-o", "odd.png", "--grid", "none", "--quiet"}, here);
     EXPECT_EQ(countLines(failed.err, ""), 1) << failed.err;
     for (const RunResult& result : {info, drawn, failed}) {
         EXPECT_EQ((result.out + result.err).find('\x1b'), std::string::npos);

@@ -101,19 +101,29 @@ TEST_F(MeshOutputs, EveryKindOfFileFromAShape) {
     EXPECT_EQ(mFolder.contents().size(), 6u);
 }
 
+/// A .ply file without its notes, which tell what it was made from.
+std::string withoutNotes(const std::filesystem::path& path) {
+    std::string text = readText(path);
+    const std::string mark = "comment note: ";
+    for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark)) {
+        text.erase(at, text.find('\n', at) + 1 - at);
+    }
+    return text;
+}
+
 TEST_F(MeshOutputs, TheSameByWayOfAVdb) {
     writeText(mFolder / "cube.obj", cubeObj());
     succeed({"convert", "cube.obj", "-o", "direct.ply", "-r", "20", "--iso", "0.4"});
     succeed({"convert", "cube.obj", "-o", "cube.vdb", "-r", "20", "--iso", "0.4"});
     succeed({"convert", "cube.vdb", "-o", "later.ply"});
-    EXPECT_EQ(readText(mFolder / "direct.ply"), readText(mFolder / "later.ply"));
+    EXPECT_EQ(withoutNotes(mFolder / "direct.ply"), withoutNotes(mFolder / "later.ply"));
     succeed({"convert", "cube.vdb", "-o", "other.ply", "--iso", "0.6"});
-    EXPECT_NE(readText(mFolder / "direct.ply"), readText(mFolder / "other.ply"));
+    EXPECT_NE(withoutNotes(mFolder / "direct.ply"), withoutNotes(mFolder / "other.ply"));
     // Through the standard input.
     const RunResult piped = run({"convert", "stdin.vdb", "-o", "piped.ply"},
                                 {.standardInput = (mFolder / "cube.vdb").string()});
     EXPECT_EQ(piped.status, 0) << piped.err;
-    EXPECT_EQ(readText(mFolder / "piped.ply"), readText(mFolder / "later.ply"));
+    EXPECT_EQ(withoutNotes(mFolder / "piped.ply"), withoutNotes(mFolder / "later.ply"));
     // And the mesh is one that can be converted again, without a word of warning.
     succeed({"convert", "later.ply", "-o", "again.vdb", "-r", "20", "--strict"});
 }

@@ -44,9 +44,10 @@ TEST(Readme, RunnableBlocksRun) {
             runProgram({"/bin/sh", "-e", "-c", path + block}, {.folder = folder.path()});
         EXPECT_EQ(result.status, 0) << block << result.err;
     }
-    for (const char* name : {"bunny.vdb", "bunny.png", "bunny.exr", "bunny.json", "sharp.vdb",
-                             "voxels.png", "small.vdb", "levels.vdb", "piped.png", "painted.vdb",
-                             "bunny.ply", "painted.glb", "soft.png", "fog.png", "around.03.png"}) {
+    for (const char* name :
+         {"bunny.vdb", "bunny.png", "bunny.exr", "bunny.json", "sharp.vdb", "voxels.png",
+          "small.vdb", "levels.vdb", "piped.png", "painted.vdb", "bunny.ply", "painted.glb",
+          "soft.png", "fog.png", "around.03.png", "sim.0002.vdb", "again.vdb"}) {
         EXPECT_TRUE(fs::exists(folder / name)) << name;
     }
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/types.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -191,6 +192,65 @@ TEST_F(AtomicFileTest, RemovesTemporariesForAHandlerOfSignals) {
     AtomicFile::removeTemporaries();
     EXPECT_EQ(countFiles(), 1);
     EXPECT_EQ(read(folder / "b.vdb"), "whole");
+}
+
+// A name that a process which was killed would leave, in the way of those that live.
+fs::path leftover(const fs::path& folder, const std::string& process) {
+    AtomicFile file(folder / "name.vdb");
+    file.open();
+    std::string name = file.temporary().filename().string();
+    const std::string own = std::to_string(getpid());
+    return folder / name.replace(name.find(own), own.size(), process);
+}
+
+TEST_F(AtomicFileTest, RemovesWhatKilledProcessesHaveLeft) {
+    const fs::path left = leftover(folder, "1234567-0");
+    const fs::path sub = folder / "sub";
+    fs::create_directory(sub);
+    write(sub / left.filename(), "half");
+    // Of other machines, or of something else altogether.
+    write(sub / ".bandvox-0123abcd-1-0.vdb", "half");
+    write(sub / "name.vdb", "older");
+    fs::create_directory(sub / (left.filename().string() + "-folder"));
+    const AtomicFile file(sub / "other.vdb");
+    EXPECT_FALSE(fs::exists(sub / left.filename()));
+    EXPECT_TRUE(fs::exists(sub / ".bandvox-0123abcd-1-0.vdb"));
+    EXPECT_TRUE(fs::exists(sub / "name.vdb"));
+    EXPECT_TRUE(fs::exists(sub / (left.filename().string() + "-folder")));
+}
+
+TEST_F(AtomicFileTest, LeavesFilesAloneThatSomebodyWrites) {
+    const fs::path sub = folder / "sub";
+    fs::create_directory(sub);
+    int ready[2], done[2];
+    ASSERT_EQ(pipe(ready), 0);
+    ASSERT_EQ(pipe(done), 0);
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        // The other process: writes half, waits, and writes the rest.
+        AtomicFile file(sub / "a.vdb");
+        std::ofstream stream = file.open();
+        stream << "half" << std::flush;
+        char byte = 0;
+        const bool went = ::write(ready[1], "r", 1) == 1 && ::read(done[0], &byte, 1) == 1;
+        stream << " and half" << std::flush;
+        if (went) file.commit();
+        ::_exit(0);
+    }
+    char byte = 0;
+    ASSERT_EQ(::read(ready[0], &byte, 1), 1);
+    {
+        AtomicFile file(sub / "b.vdb");
+        fill(file, "b");
+        file.commit();
+    }
+    ASSERT_EQ(::write(done[1], "d", 1), 1);
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+    EXPECT_EQ(read(sub / "a.vdb"), "half and half");
+    EXPECT_EQ(read(sub / "b.vdb"), "b");
 }
 
 TEST_F(AtomicFileTest, RefusesTargetsThatCannotBe) {

@@ -75,6 +75,27 @@ std::vector<Vec3d> cornersOf(const Mesh& mesh) {
     return corners;
 }
 
+TEST_F(MeshFiles, NotesComeBack) {
+    const std::vector<std::string> notes{"settings: a=1", R"(input: "quoted" \ and ] [)",
+                                         "input: \xc3\xa4 # note"};
+    for (const char* name : {"a.ply", "a.obj", "a.gltf", "a.glb"}) {
+        SurfaceMesh mesh = octahedron();
+        write(name, mesh);
+        EXPECT_EQ(readMeshNotes(mFolder / name), std::vector<std::string>{}) << name;
+        mesh.notes = notes;
+        write(name, mesh);
+        EXPECT_EQ(readMeshNotes(mFolder / name), notes) << name;
+        // They change nothing for whoever does not know of them.
+        EXPECT_EQ(readMesh(mFolder / name).mesh.triangles.size(), 8u) << name;
+    }
+    SurfaceMesh mesh = octahedron(Vec3d(0.0), false);
+    const std::string plain = write("a.stl", mesh);
+    mesh.notes = notes;
+    EXPECT_EQ(write("a.stl", mesh), plain);
+    EXPECT_EQ(readMeshNotes(mFolder / "a.stl"), std::vector<std::string>{});
+    EXPECT_EQ(readMeshNotes(mFolder / "none.ply"), std::vector<std::string>{});
+}
+
 TEST_F(MeshFiles, EveryFormatReadsBackAsItWas) {
     for (const std::string& extension : writableMeshExtensions()) {
         SCOPED_TRACE(extension);

@@ -1,3 +1,4 @@
+#include "core/leftovers.h"
 #include "core/temporary_table.h"
 
 #include <bandvox/core/atomic_file.h>
@@ -57,7 +58,7 @@ fs::path temporaryFor(const fs::path& target) {
     const std::string unique = std::to_string(getpid()) + "-" + std::to_string(counter++);
     const std::string extension = target.extension().string();
     return target.parent_path() /
-           (".bandvox-" + unique + (extension.size() <= kLongestExtension ? extension : ""));
+           (temporaryPrefix() + unique + (extension.size() <= kLongestExtension ? extension : ""));
 }
 
 // Throws unless a file can be made in the target's folder, as far as that can be told.
@@ -102,6 +103,7 @@ AtomicFile::AtomicFile(fs::path target)
     if (exists) mMode = status.st_mode & kPermissions;
     requireFolder(mTarget, mReplaced);
 
+    removeLeftovers(folderOf(mReplaced));
     // Only making a file tells whether one can be made. Do it now, before the work.
     create();
     forget();
@@ -118,15 +120,19 @@ void AtomicFile::create() {
         const mode_t mode = mMode ? *mMode | S_IWUSR : 0666;
         const int descriptor =
             ::open(mTemporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-        if (descriptor >= 0) {
-            ::close(descriptor);
+        const int error = errno;
+        if (descriptor >= 0 && claimTemporary(descriptor)) {
+            mLock = descriptor;
             return;
         }
-        const int error = errno;
         dropTemporary(mSlot);
         mTemporary.clear();
-        // A process of the same number may have died and left such a name.
-        if (error != EEXIST) fail(mTarget, std::strerror(error));
+        if (descriptor >= 0) {
+            ::close(descriptor);
+        } else if (error != EEXIST) {
+            // A process of the same number may have died and left such a name.
+            fail(mTarget, std::strerror(error));
+        }
     }
 }
 
@@ -135,6 +141,12 @@ void AtomicFile::forget() {
     ::unlink(mTemporary.c_str());
     dropTemporary(mSlot);
     mTemporary.clear();
+    release();
+}
+
+void AtomicFile::release() {
+    if (mLock >= 0) ::close(mLock);
+    mLock = -1;
 }
 
 std::ofstream AtomicFile::open() {
@@ -167,6 +179,7 @@ void AtomicFile::commit() {
         fs::rename(mTemporary, mReplaced, error);
         if (error) fail(mTarget, error.message());
         dropTemporary(mSlot);
+        release();
         // The file is whole under either name; so that the new one lasts is only tried.
         const int folder = ::open(folderOf(mReplaced).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
         if (folder >= 0) {

@@ -1,5 +1,6 @@
 #include "core/words.h"
 #include "mesh/mesh_formats.h"
+#include "mesh/mesh_notes.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/version.h>
@@ -98,7 +99,8 @@ std::pair<std::string, std::string> GltfText::make(const std::string& uri) {
     addView(kVectorBytes * triangles, kOfIndices);
 
     std::string head = std::string(R"({"asset":{"version":"2.0","generator":"Bandvox )") +
-                       version() + R"("},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0)";
+                       version() + '"' + gltfNotes(mMesh.surface.notes) +
+                       R"(},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0)";
     if (mMesh.needsDouble) head += R"(,"translation":)" + exactText(origin);
     head += R"(}],"meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1)";
     if (mMesh.hasColors()) head += R"(,"COLOR_0":2)";

@@ -1,5 +1,6 @@
 #include "mesh/mesh_formats.h"
 
+#include "mesh/mesh_notes.h"
 #include "source/srgb.h"
 
 #include <bandvox/core/version.h>
@@ -49,6 +50,7 @@ void putNumbers(ByteOutput& output, const Vector& vector) {
 void writePly(ByteOutput& output, const WritableMesh& mesh) {
     const std::string number = mesh.needsDouble ? "double" : "float";
     std::string head = "ply\nformat binary_little_endian 1.0\ncomment " + signature();
+    for (const std::string& note : mesh.surface.notes) head += kPlyNote + note;
     head += "\nelement vertex " + std::to_string(mesh.surface.mesh.points.size()) + "\n";
     for (const char* name : {"x", "y", "z"})
         head.append("property ").append(number).append(" ").append(name).append("\n");
@@ -83,7 +85,9 @@ void writePly(ByteOutput& output, const WritableMesh& mesh) {
 }
 
 void writeObj(ByteOutput& output, const WritableMesh& mesh) {
-    output.put("# " + signature() + "\n");
+    output.put("# " + signature());
+    for (const std::string& note : mesh.surface.notes) output.put(kObjNote + note);
+    output.put('\n');
     for (std::size_t i = 0; i < mesh.surface.mesh.points.size(); ++i) {
         output.put('v');
         const Vec3d& point = mesh.surface.mesh.points[i];

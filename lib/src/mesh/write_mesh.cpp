@@ -20,13 +20,13 @@ namespace {
 struct MeshFormat {
     const char* extension;
     void (*write)(ByteOutput& output, const WritableMesh& mesh);
-    bool holdsColors;
+    bool holdsColors, holdsNotes;
 };
 
 constexpr std::array kMeshFormats{
-    MeshFormat{".obj", writeObj, true}, MeshFormat{".ply", writePly, true},
-    MeshFormat{".stl", writeStl, false}, MeshFormat{".gltf", writeGltf, true},
-    MeshFormat{".glb", writeGlb, true}};
+    MeshFormat{".obj", writeObj, true, true}, MeshFormat{".ply", writePly, true, true},
+    MeshFormat{".stl", writeStl, false, false}, MeshFormat{".gltf", writeGltf, true, true},
+    MeshFormat{".glb", writeGlb, true, true}};
 
 const MeshFormat* formatOf(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
@@ -98,6 +98,11 @@ bool isWritableMesh(const std::filesystem::path& path) {
 bool holdsColors(const std::filesystem::path& path) {
     const MeshFormat* format = formatOf(path);
     return format != nullptr && format->holdsColors;
+}
+
+bool holdsNotes(const std::filesystem::path& path) {
+    const MeshFormat* format = formatOf(path);
+    return format != nullptr && format->holdsNotes;
 }
 
 void writeMesh(AtomicFile& file, const SurfaceMesh& surface, Progress& progress) {

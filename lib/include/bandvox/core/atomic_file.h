@@ -18,6 +18,10 @@ std::filesystem::path followLinks(std::filesystem::path path);
 /// Links are followed. A file that is replaced passes its permissions on, except for those to run
 /// as somebody else. What cannot be replaced
 /// is written in place: a character device, a pipe, one of the process's own descriptors.
+///
+/// A process that is killed leaves its temporary file, ".bandvox-..." with the target's extension.
+/// The next file that is written to that folder, by the same user on the same machine since it was
+/// started, removes it; what other machines have left is left to whoever knows of them.
 class AtomicFile {
   public:
     /// Makes sure that the target can be written, and leaves nothing behind. Throws
@@ -58,6 +62,7 @@ class AtomicFile {
   private:
     void create();
     void forget();
+    void release();
 
     std::filesystem::path mTarget;
     std::filesystem::path mReplaced;  // the target, or what it links to
@@ -65,6 +70,7 @@ class AtomicFile {
     bool mInPlace = false;
     std::optional<mode_t> mMode;  // of the file that is replaced
     int mSlot = -1;               // in the table of temporaries
+    int mLock = -1;               // descriptor that keeps others from removing the temporary
     bool mCompleted = false;
     bool mCommitted = false;
 };

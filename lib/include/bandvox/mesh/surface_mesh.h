@@ -4,6 +4,7 @@
 
 #include <openvdb/Types.h>
 
+#include <string>
 #include <vector>
 
 namespace bandvox {
@@ -14,6 +15,9 @@ struct SurfaceMesh {
     std::vector<openvdb::Vec3f> normals;  ///< one for each point, outward, of length 1
     std::vector<openvdb::Vec3f>
         colors;  ///< one for each point, linear light; empty without colours
+    /// Lines of text about the mesh, without control characters, that go into files which have
+    /// room for them: .obj .ply .gltf .glb.
+    std::vector<std::string> notes = {};
 };
 
 }  // namespace bandvox

@@ -20,6 +20,13 @@ bool isWritableMesh(const std::filesystem::path& path);
 /// True if that kind of file has colours of points.
 bool holdsColors(const std::filesystem::path& path);
 
+/// True if that kind of file has room for notes.
+bool holdsNotes(const std::filesystem::path& path);
+
+/// The notes in a mesh file that writeMesh has written; none of other files, and of those that
+/// cannot be read.
+std::vector<std::string> readMeshNotes(const std::filesystem::path& path);
+
 /// Writes a mesh as the extension of the file's target says; the caller commits it. Written in one
 /// go from start to end.
 ///

@@ -1,0 +1,129 @@
+#include "convert_job.h"
+
+#include "convert_settings.h"
+#include "input_files.h"
+#include "standard_streams.h"
+#include "words.h"
+
+#include <bandvox/core/sha256.h>
+#include <bandvox/mesh/write_mesh.h>
+#include <bandvox/source/read_mesh.h>
+#include <bandvox/source/shapes.h>
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <set>
+
+namespace bandvox::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// What a file says of how it was made. Reads all of it, so that a damaged one is found out.
+ConvertStamp readStamp(const std::string& file, Progress& progress) {
+    if (!isWritableMesh(file)) return stampOf(readVdb(file));
+    readMesh(file, progress);
+    return fromNotes(readMeshNotes(file));
+}
+
+// The files that two descriptions of an input tell of, without what they share.
+std::set<std::string> changedFiles(const std::string& before, const std::string& now) {
+    std::set<std::string> changed;
+    std::set<std::string_view> all[2];
+    const auto lines = [](const std::string& text) {
+        const auto parts = split(text, '\n');
+        return std::set<std::string_view>(parts.begin(), parts.end());
+    };
+    all[0] = lines(before);
+    all[1] = lines(now);
+    for (int side = 0; side < 2; ++side) {
+        for (const std::string_view line : all[side]) {
+            if (all[1 - side].contains(line)) continue;
+            const std::size_t space = line.find(' ');
+            const std::size_t name =
+                space == std::string_view::npos ? 0 : line.find(' ', space + 1);
+            changed.insert(printable(std::string(
+                line.substr(name == std::string_view::npos || name == 0 ? 0 : name + 1))));
+        }
+    }
+    changed.erase("");
+    return changed;
+}
+
+}  // namespace
+
+std::string ConvertJob::describeInput() const {
+    const std::string& input = mLine.positional(0);
+    if (isShape(input)) return input;
+    std::string text;
+    const ProgressStage stage(mRun.progress(), "identify input", 0);
+    for (const fs::path& file : filesOfInput(input, mLine.has("color"))) {
+        if (!text.empty()) text += '\n';
+        text += sha256OfFile(file, mRun.progress());
+        text += ' ';
+        text += std::to_string(fs::file_size(file));
+        text += ' ';
+        text += printable(file.filename().string());
+    }
+    return text;
+}
+
+bool ConvertJob::begin() {
+    const std::string output = mLine.requiredText("output");
+    const bool skips = mLine.has("skip-existing");
+    // What holds none needs none, and to read all of the input for it takes time.
+    if (!skips && !holdsStamp(output)) return true;
+    mStamp = {settingsText(mLine), describeInput()};
+    if (!skips) return true;
+    if (mStamp.input.empty() && isStandardInput(mLine.positional(0))) {
+        throw Error(ErrorKind::Usage,
+                    "--skip-existing cannot tell whether the standard input is the same as before; "
+                    "expected a file as the input");
+    }
+    if (!holdsStamp(output)) {
+        throw Error(ErrorKind::Usage,
+                    "--skip-existing needs a kind of file that says how it was "
+                    "made, and '" +
+                        output + "' is none; expected " + "another one, as .vdb or .ply");
+    }
+    std::error_code ignored;
+    const fs::path path = outputPath(output);
+    if (!fs::exists(path, ignored) || !fs::is_regular_file(path, ignored)) return true;
+    const auto why = whyToRedo(output, mStamp, mRun.progress());
+    if (why) {
+        mRun.say("redo     " + output + ": " + *why);
+        return true;
+    }
+    mRun.skip(output, "it is whole, and made with the same settings from the same input");
+    return false;
+}
+
+void ConvertJob::writeVolume(AtomicFile& output, const openvdb::GridCPtrVec& grids,
+                             const VdbWriteOptions& options) const {
+    const openvdb::GridCPtrVec written = stamped(grids, mStamp);
+    mRun.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, written, options); });
+}
+
+std::optional<std::string> whyToRedo(const std::string& output, const ConvertStamp& stamp,
+                                     Progress& progress) {
+    ConvertStamp found;
+    try {
+        const ProgressStage stage(progress, "check output", 0);
+        found = readStamp(output, progress);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::Input) throw;
+        return std::string(error.what());
+    }
+    progress.throwIfInterrupted();
+    if (found.settings.empty()) return "it does not say with which settings it was made";
+    const std::string difference = settingsDifference(found.settings, stamp.settings);
+    if (!difference.empty()) return difference;
+    if (found.input.empty()) return "it does not say from which input it was made";
+    if (found.input == stamp.input) return std::nullopt;
+    const std::set<std::string> changed = changedFiles(found.input, stamp.input);
+    return "the input has changed: " + joined({changed.begin(), changed.end()}, ", ");
+}
+
+}  // namespace bandvox::app

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "command_line.h"
+
+#include <openvdb/openvdb.h>
+
+#include <optional>
+#include <string>
+
+namespace bandvox::app {
+
+/// The lattice that grids are brought to: one of these, or none.
+struct LatticeRequest {
+    std::optional<int> resolution;
+    std::optional<double> voxelSize;
+    std::optional<double> factor;
+    std::optional<std::string> onto;
+
+    bool isSame() const { return !resolution && !voxelSize && !factor && !onto; }
+};
+
+/// --resolution, --voxel-size, --factor, --onto. Throws Error(ErrorKind::Usage) if several are
+/// there.
+LatticeRequest readLattice(const CommandLine& line);
+
+/// The lattice of the file that --onto names; null without. Throws Error(ErrorKind::Input) if it
+/// has no grids.
+openvdb::math::Transform::ConstPtr readOnto(const LatticeRequest& request);
+
+/// The lattice for a grid of any type. `onto`: what readOnto gave.
+openvdb::math::Transform::Ptr targetFor(const openvdb::GridBase& grid,
+                                        const LatticeRequest& request,
+                                        const openvdb::math::Transform::ConstPtr& onto);
+
+/// The same for what becomes a solid, whose voxels have to be cubes: without a request of the side
+/// that the grid's voxels have where they are shortest. Throws Error(ErrorKind::Usage) for another
+/// lattice that --onto asks for.
+openvdb::math::Transform::Ptr cubesFor(const openvdb::GridBase& grid, const LatticeRequest& request,
+                                       const openvdb::math::Transform::ConstPtr& onto);
+
+}  // namespace bandvox::app
