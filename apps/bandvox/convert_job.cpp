@@ -100,9 +100,12 @@ std::string ConvertJob::describeInput() const {
 }
 
 bool ConvertJob::begin() {
-    mStamp = {settingsText(mLine), describeInput()};
-    if (!mLine.has("skip-existing")) return true;
     const std::string output = mLine.requiredText("output");
+    const bool skips = mLine.has("skip-existing");
+    // What holds none needs none, and to read all of the input for it takes time.
+    if (!skips && !holdsStamp(output)) return true;
+    mStamp = {settingsText(mLine), describeInput()};
+    if (!skips) return true;
     if (mStamp.input.empty() && isStandardInput(mLine.positional(0))) {
         throw Error(ErrorKind::Usage,
                     "--skip-existing cannot tell whether the standard input is the same as before; "

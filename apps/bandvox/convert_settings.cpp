@@ -17,7 +17,6 @@
 #include <bandvox/mesh/density_to_mesh.h>
 #include <bandvox/mesh/write_mesh.h>
 #include <bandvox/resample/resample_grid.h>
-#include <bandvox/source/array_source.h>
 #include <bandvox/source/shapes.h>
 
 #include <algorithm>
@@ -90,7 +89,9 @@ void addLatticeDefaults(const CommandLine& line, const Add& add) {
     for (const char* name : {"resolution", "voxel-size", "factor", "onto", "grid", "iso"}) {
         add(name, "");
     }
-    if (isStackInput(line.positional(0))) add("background", "0");
+    if (!isStackInput(line.positional(0))) return;
+    add("background", "0");
+    for (const char* name : {"channel", "series", "spacing", "origin"}) add(name, "");
 }
 
 // Of a solid, whatever it comes from, that becomes a density.

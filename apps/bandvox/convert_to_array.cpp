@@ -125,6 +125,10 @@ std::optional<ArrayOutput::Kind> ArrayOutput::kindOf(const std::string& name) {
     return isImagePattern(name) ? Kind::Pattern : Kind::Pages;
 }
 
+bool isArrayOutput(const std::string& name) {
+    return ArrayOutput::kindOf(name).has_value();
+}
+
 std::unique_ptr<ArrayOutput> ArrayOutput::read(const CommandLine& line) {
     const std::string output = line.requiredText("output");
     const auto kind = kindOf(output);

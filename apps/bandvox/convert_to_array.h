@@ -17,6 +17,9 @@
 // Volumes as arrays and stacks of images: what convert writes instead of a .vdb file.
 namespace bandvox::app {
 
+/// True if the output is an array, an image or a pattern of images, by its name.
+bool isArrayOutput(const std::string& name);
+
 /// The options --type, --range and --box.
 std::vector<OptionEntry> arrayOutputEntries();
 
@@ -35,6 +38,7 @@ class ArrayOutput {
 
     ArrayOutput(const CommandLine& line, std::filesystem::path path, Kind kind);
     static std::optional<Kind> kindOf(const std::string& name);
+    friend bool isArrayOutput(const std::string& name);
     bool isImages() const { return mKind == Kind::Pages || mKind == Kind::Pattern; }
     void writePattern(CommandRun& run, const openvdb::FloatGrid& grid);
     WrittenVoxels writeFiles(CommandRun& run, const openvdb::FloatGrid& grid);
