@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -51,17 +52,43 @@ class BlockTriangles {
     /// Calls visit(places, triangles) for each ring: its corners, and triples of their numbers.
     template <typename Visit>
     void forEachRing(const BlockValues& values, const Visit& visit) {
+        findInside(values);
         for (int x = 0; x < kBlockSide; ++x) {
             for (int y = 0; y < kBlockSide; ++y) {
-                for (int z = 0; z < kBlockSide; ++z) {
-                    const unsigned inside = values.inside(x, y, z, mIso);
-                    if (inside != 0 && inside != 0xFF) visitCell(values, {x, y, z}, inside, visit);
+                const unsigned rows[] = {mInside[x][y], mInside[x + 1][y], mInside[x][y + 1],
+                                         mInside[x + 1][y + 1]};
+                const unsigned any = rows[0] | rows[1] | rows[2] | rows[3];
+                const unsigned all = rows[0] & rows[1] & rows[2] & rows[3];
+                // Cells whose corners are not all alike.
+                unsigned crossed = (any | any >> 1) & ~(all & all >> 1) & kCellsOfRow;
+                for (; crossed != 0; crossed &= crossed - 1) {
+                    const int z = std::countr_zero(crossed);
+                    unsigned inside = 0;
+                    for (unsigned i = 0; i < 8; ++i) {
+                        inside |= (rows[i & 3] >> (z + (i >> 2)) & 1U) << i;
+                    }
+                    visitCell(values, {x, y, z}, inside, visit);
                 }
             }
         }
     }
 
   private:
+    static constexpr unsigned kCellsOfRow = (1U << kBlockSide) - 1;
+
+    // Of each row of nodes along z which are inside, one bit each.
+    void findInside(const BlockValues& values) {
+        for (int x = 0; x < kBlockNodes; ++x) {
+            for (int y = 0; y < kBlockNodes; ++y) {
+                unsigned row = 0;
+                for (int z = 0; z < kBlockNodes; ++z) {
+                    row |= (values.at(x, y, z) > mIso ? 1U : 0U) << z;
+                }
+                mInside[x][y] = row;
+            }
+        }
+    }
+
     template <typename Visit>
     void visitCell(const BlockValues& values, const Coord& cell, unsigned inside,
                    const Visit& visit) {
@@ -125,6 +152,7 @@ class BlockTriangles {
     }
 
     double mIso;
+    std::array<std::array<unsigned, kBlockNodes>, kBlockNodes> mInside{};
     std::array<Vec3d, kMostCorners + 1> mPlaces;
     std::vector<openvdb::Vec3I> mTriangles;
 };
