@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <fstream>
 
 namespace bandvox::app_test {
@@ -195,6 +196,34 @@ TEST_F(ConvertStack, WritesToStreams) {
         EXPECT_EQ(result.status, 0) << result.err;
         expectSameAsSample("out" + extension);
     }
+}
+
+TEST_F(ConvertStack, GoesWithSolidsFramesAndStamps) {
+    expectDone({"a.npy", "-o", "s.##.png"});
+    // What of a stack is above a threshold, as an array.
+    expectDone({"s.##.png", "-o", "solid.nrrd", "--threshold", "15000", "--spacing", "0.5",
+                "--type", "uint8"});
+    const auto solid = openArray(mFolder / "solid.nrrd");
+    EXPECT_NEAR(solid->info().toWorld(0, 0), 0.5, 1e-9);
+    std::vector<float> values(static_cast<std::size_t>(solid->info().valuesPerSlice()) *
+                              static_cast<std::size_t>(solid->info().slices()));
+    solid->readSlices(values);
+    // Seven voxels wide, it is not quite 1 in its midst.
+    EXPECT_GE(*std::max_element(values.begin(), values.end()), 230);
+    EXPECT_LE(*std::min_element(values.begin(), values.end()), 3);
+    // A stack's numbers are no frames, those of volumes are.
+    expectDone({"a.npy", "-o", "f.1.vdb"});
+    expectDone({"a.npy", "-o", "f.2.vdb"});
+    expectDone({"f.#.vdb", "-o", "f.#.tif", "--type", "uint16"});
+    expectSameAsSample("f.1.tif");
+    expectSameAsSample("f.2.tif");
+    // A volume made of a stack knows of every slice.
+    expectDone({"s.##.png", "-o", "s.vdb", "--skip-existing"});
+    const RunResult again = convert({"s.##.png", "-o", "s.vdb", "--skip-existing"});
+    EXPECT_NE(again.err.find("skipped"), std::string::npos) << again.err;
+    expectDone({"s.##.png", "-o", "s.vdb", "--skip-existing", "--spacing", "2"});
+    EXPECT_NEAR(readVdb(mFolder / "s.vdb").front()->voxelSize().x(), 2, 1e-9);
+    expectFailure({"s.vdb", "-o", "s.nrrd", "--skip-existing"}, 2, {"--skip-existing", "s.nrrd"});
 }
 
 TEST_F(ConvertStack, SparesWhatItReads) {
