@@ -32,6 +32,7 @@ ColorResult makeColors(CommandRun& run, const ColoredMesh& mesh, const DensityRe
     colors.voxelSize = density.grid->voxelSize().x();
     colors.filter = options.filter;
     colors.tile = options.tile;
+    colors.shard = options.shard;
     return surfaceToColor(mesh, colors, run.progress());
 }
 

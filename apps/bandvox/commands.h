@@ -26,15 +26,20 @@ void runRender(const CommandLine& line);
 const CommandTable& infoTable();
 void runInfo(const CommandLine& line);
 
+const CommandTable& compareTable();
+void runCompare(const CommandLine& line);
+
+const CommandTable& mergeTable();
+void runMerge(const CommandLine& line);
+
 const CommandTable& viewTable();
 void runView(const CommandLine& line);
 
 /// All commands, in the order in which the help lists them.
 inline const std::vector<Command>& commands() {
-    static const std::vector<Command> all{{convertTable, runConvert},
-                                          {voxelizeTable, runVoxelize},
-                                          {renderTable, runRender},
-                                          {infoTable, runInfo},
+    static const std::vector<Command> all{{convertTable, runConvert}, {voxelizeTable, runVoxelize},
+                                          {renderTable, runRender},   {infoTable, runInfo},
+                                          {compareTable, runCompare}, {mergeTable, runMerge},
                                           {viewTable, runView}};
     return all;
 }

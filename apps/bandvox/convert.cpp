@@ -7,15 +7,16 @@
 #include "convert_job.h"
 #include "convert_points.h"
 #include "convert_settings.h"
+#include "convert_to_array.h"
 #include "convert_volume.h"
 #include "mesh_output.h"
 #include "output_kind.h"
+#include "stack_input.h"
 #include "volume_options.h"
 #include "words.h"
 
 #include <bandvox/bandlimit/field_to_density.h>
 #include <bandvox/bandlimit/soup_to_density.h>
-#include <bandvox/source/array_source.h>
 #include <bandvox/source/shapes.h>
 
 #include <vector>
@@ -33,6 +34,7 @@ const CommandTable& convertTable() {
         add(latticeEntries());
         add(gridSolidEntries());
         add(pointEntries());
+        add(stackEntries());
         add(filterEntries(density.filter));
         add({
             {"tolerance", 0, "E", formatNumber(density.tolerance),
@@ -74,10 +76,12 @@ const CommandTable& convertTable() {
              "Store 16-bit values, which changes densities by up to 2.5e-4, above 1 by 5e-4.",
              "Output"},
             compressionEntry(),
+            shardEntry(),
             adaptivityEntry(),
         });
         add(outputKindEntries());
         add(frameEntries());
+        add(arrayOutputEntries());
         return CommandTable{
             "convert",
             "Turn a mesh, a built-in shape or a volume into a band-limited volume or its surface.",
@@ -86,11 +90,15 @@ const CommandTable& convertTable() {
             "nothing aliases; the error is measured and stored in the grid. Holes of the mesh are "
             "capped, and said so. The grids of a .vdb file are copied, or filtered for another "
             "lattice: of a density, what its source would have become there. An output that is a "
-            "mesh is the surface of the density, or of a .vdb file's level set, closed.",
+            "mesh is the surface of the density, or of a .vdb file's level set, closed. Arrays, "
+            "stacks "
+            "of images and DICOM series come in as grids, and grids go out as arrays and stacks.",
             {{"INPUT",
               "A mesh (.obj, .ply, .stl, .gltf, ...), a .vdb file (stdin.vdb is the standard "
-              "input), an array (.npy, .nrrd, .nhdr, .mha, .mhd), points (.xyz, .csv, .txt, a .ply "
-              "without faces), or a built-in shape such as shape:torus."}},
+              "input), an array (.npy, .nrrd, .nhdr, .mha, .mhd), slices (a folder or a pattern "
+              "of images, slice.####.tif, or a .tif file with pages), a folder or a file of DICOM, "
+              "points (.xyz, .csv, .txt, a .ply without faces), or a built-in shape such as "
+              "shape:torus."}},
             options,
             {
                 {"bandvox convert bunny.obj -o bunny.vdb --resolution 512",
@@ -110,6 +118,10 @@ const CommandTable& convertTable() {
                 {"bandvox convert spot.obj -o spot.vdb --color",
                  "The density, and the colours of the surface around it."},
                 {"bandvox convert spot.vdb -o spot.ply", "The surface of that, with its colours."},
+                {"bandvox convert scan/ -o scan.vdb --spacing 0.05",
+                 "A folder of images of slices, 0.05 world units from voxel to voxel."},
+                {"bandvox convert bunny.vdb -o slices.####.png",
+                 "The density as images, 16 bits a pixel."},
                 {"bandvox convert part.stl -o part.vdb --voxel-size 0.1 --strict",
                  "Voxels of a given size, and no result if anything about the mesh is doubtful."},
                 {"bandvox convert sim.####.obj -o sim.####.vdb --frames 1-100 --skip-existing",

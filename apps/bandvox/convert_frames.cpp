@@ -11,6 +11,7 @@
 #include "frame_pattern.h"
 #include "words.h"
 
+#include <bandvox/grid/write_image_stack.h>
 #include <bandvox/source/array_source.h>
 #include <bandvox/source/point_cloud.h>
 #include <bandvox/source/read_mesh.h>
@@ -256,7 +257,9 @@ void convertOne(ConvertJob& job) {
 
 bool asksForFrames(const CommandLine& line) {
     if (line.has("frames") || line.has("keep-going")) return true;
-    if (hasFrame(line.text("output").value_or(""))) return true;
+    const std::string output = line.text("output").value_or("");
+    // Of images, many are one stack.
+    if (hasFrame(output) && !isWritableImage(output)) return true;
     // Of other kinds of files, many may be one input.
     const std::string& input = line.positional(0);
     const bool isWhole = isMeshFile(input) || extensionOf(input) == ".vdb" || isArrayFile(input) ||

@@ -4,11 +4,13 @@
 #include "convert_grid_solid.h"
 
 #include "choose_grid.h"
+#include "convert_to_array.h"
 #include "convert_volume.h"
 #include "density_report.h"
 #include "iso_option.h"
 #include "mesh_output.h"
 #include "output_kind.h"
+#include "stack_input.h"
 #include "standard_streams.h"
 #include "volume_options.h"
 #include "words.h"
@@ -27,6 +29,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -45,9 +48,11 @@ struct Threshold {
 struct GridSolidRequest {
     std::string input;
     std::filesystem::path output;
-    std::optional<MeshOutput> mesh;  ///< instead of a volume
+    std::optional<MeshOutput> mesh;      ///< instead of a volume
+    std::unique_ptr<ArrayOutput> array;  ///< the same
     std::optional<std::string> grid;
     std::optional<Threshold> threshold;
+    StackRequest stack;
     double background = 0;  ///< of an array
     LatticeRequest lattice;
     DensityOptions density;   ///< without a voxel size
@@ -57,7 +62,7 @@ struct GridSolidRequest {
     int levels = 0;
     VdbWriteOptions write;
 
-    bool isArray() const { return isArrayFile(input); }
+    bool isArray() const { return isStackInput(input); }
 };
 
 std::optional<Threshold> readThreshold(const CommandLine& line, bool isArray) {
@@ -94,11 +99,13 @@ GridSolidRequest parseGridSolid(const CommandLine& line) {
     GridSolidRequest request;
     request.input = line.positional(0);
     const std::string output = line.requiredText("output");
-    request.mesh = readVdbOrMeshOutput(line);
+    request.array = ArrayOutput::read(line);
+    if (!request.array) request.mesh = readVdbOrMeshOutput(line);
     request.output = outputPath(output);
     refuseOptions(line,
                   {"route", "oversample", "overlap", "color", "no-filter", "points", "radius"},
                   "for the solid of a volume");
+    request.stack = readStackRequest(line, request.input);
     request.threshold = readThreshold(line, request.isArray());
     if (request.isArray()) {
         refuseOptions(line, {"grid"}, "for an array, which has one only");
@@ -124,8 +131,14 @@ GridSolidRequest parseGridSolid(const CommandLine& line) {
     density.iso = request.iso.value.value_or(density.iso);
     request.kind = readOutputKind(line).value_or(OutputKind());
     request.levels = readDetailLevels(line);
+    density.shard = readShard(line);
+    if (!density.shard.isWhole() && request.kind.kind != OutputKind::Kind::Density) {
+        throw Error(ErrorKind::Usage,
+                    "--as level-set or fog needs the whole, and --shard asks for "
+                    "a part; convert what is merged");
+    }
     request.write.half = line.has("half");
-    request.write.compression = readCompression(line);
+    if (!request.array) request.write.compression = readCompression(line);
     return request;
 }
 
@@ -137,9 +150,8 @@ struct GridSolid {
 };
 
 GridSolid readArraySolid(CommandRun& run, const GridSolidRequest& request) {
-    const auto source = openArray(request.input);
-    run.say("array    " + formatSize(source->info().size) + " values of type " +
-            source->info().valueType);
+    const auto source = openStack(request.input, request.stack);
+    for (const std::string& words : arrayInWords(source->info())) run.say(words);
     GridSolid solid;
     solid.grid = arrayToSolidGrid(
         *source, {request.threshold->low, request.threshold->high, request.background},
@@ -200,10 +212,15 @@ DensityResult densityOn(CommandRun& run, const GridSolid& solid,
 openvdb::FloatGrid::Ptr densityOfDensity(CommandRun& run, const GridSolidRequest& request,
                                          const openvdb::FloatGrid::Ptr& grid,
                                          const openvdb::math::Transform& target) {
-    if (request.lattice.isSame() && !request.isFiltered) return grid;
+    if (request.lattice.isSame() && !request.isFiltered) {
+        if (request.density.shard.isWhole()) return grid;
+        throw Error(ErrorKind::Usage,
+                    "--shard has no meaning where a density is copied; expected a new lattice");
+    }
     ResampleOptions options;
     options.filter = request.density.filter;
     options.tolerance = request.density.tolerance;
+    options.shard = request.density.shard;
     return resampleGrid(grid, target, options, run.progress()).grid;
 }
 
@@ -257,7 +274,7 @@ std::vector<OptionEntry> gridSolidEntries() {
 
 bool takesSolidOfGrid(const CommandLine& line) {
     const std::string& input = line.positional(0);
-    if (isShape(input) || !(extensionOf(input) == ".vdb" || isArrayFile(input))) return false;
+    if (isShape(input) || !(extensionOf(input) == ".vdb" || isStackInput(input))) return false;
     if (!line.has("threshold") && !line.has("as")) return false;
     if (!asksForValues(line)) return true;
     refuseOptions(line, {"threshold"}, "with --as values");
@@ -268,19 +285,23 @@ void convertGridSolid(ConvertJob& job) {
     const GridSolidRequest request = parseGridSolid(job.line());
     if (!job.begin()) return;
     CommandRun& run = job.run();
-    AtomicFile output(request.output);
+    std::optional<AtomicFile> output;
+    if (!request.array) output.emplace(request.output);
     const auto onto = readOnto(request.lattice);
     GridSolid solid = readGridSolid(run, request);
     if (isDirect(request, solid)) {
         const auto grid = makeOutput(run, request.kind, solid.grid, solid.iso);
-        return job.writeVolume(output, {grid}, request.write);
+        if (request.array) return request.array->write(run, *grid);
+        return job.writeVolume(*output, {grid}, request.write);
     }
 
     SolidDensity density = makeDensity(run, request, solid, onto);
     solid.grid.reset();
     finishDensity(run, request, density);
-    if (request.mesh) return writeMeshOutput(job, output, *request.mesh, density.grid, nullptr);
-    openvdb::GridCPtrVec written{makeOutput(run, request.kind, density.grid)};
+    if (request.mesh) return writeMeshOutput(job, *output, *request.mesh, density.grid, nullptr);
+    const auto made = makeOutput(run, request.kind, density.grid);
+    if (request.array) return request.array->write(run, *made);
+    openvdb::GridCPtrVec written{made};
     if (request.levels > 0) {
         ResampleOptions options;
         options.filter = request.density.filter;
@@ -291,7 +312,7 @@ void convertGridSolid(ConvertJob& job) {
             written.push_back(level);
         }
     }
-    job.writeVolume(output, written, request.write);
+    job.writeVolume(*output, written, request.write);
 }
 
 openvdb::FloatGrid::Ptr rebuildLevelSet(CommandRun& run, const openvdb::FloatGrid::Ptr& levelSet,
@@ -307,7 +328,7 @@ openvdb::FloatGrid::Ptr rebuildLevelSet(CommandRun& run, const openvdb::FloatGri
         densityOn(run, solid, *cubesFor(*levelSet, request.lattice, request.onto), options);
     run.warn(density.warnings, ErrorKind::Result);
     setDensityMetadata(*density.grid, density.metadata);
-    const auto result = makeOutput(run, kind, density.grid);
+    auto result = makeOutput(run, kind, density.grid);
     result->setName(levelSet->getName());
     return result;
 }

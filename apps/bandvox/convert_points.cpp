@@ -3,11 +3,13 @@
 
 #include "convert_points.h"
 
+#include "convert_to_array.h"
 #include "convert_volume.h"
 #include "density_report.h"
 #include "iso_option.h"
 #include "mesh_output.h"
 #include "output_kind.h"
+#include "stack_input.h"
 #include "standard_streams.h"
 #include "volume_options.h"
 #include "words.h"
@@ -25,6 +27,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -39,7 +42,8 @@ enum class PointKind { Auto, Balls, Surface };
 struct PointRequest {
     std::string input;
     std::filesystem::path output;
-    std::optional<MeshOutput> mesh;  ///< instead of a volume
+    std::optional<MeshOutput> mesh;      ///< instead of a volume
+    std::unique_ptr<ArrayOutput> array;  ///< the same
     PointKind kind = PointKind::Auto;
     std::optional<double> radius;  ///< of all points
     DensityOptions density;
@@ -53,12 +57,14 @@ PointRequest parsePoints(const CommandLine& line) {
     PointRequest request;
     request.input = line.positional(0);
     const std::string output = line.requiredText("output");
-    request.mesh = readVdbOrMeshOutput(line);
+    request.array = ArrayOutput::read(line);
+    if (!request.array) request.mesh = readVdbOrMeshOutput(line);
     request.output = outputPath(output);
     refuseOptions(line,
                   {"grid", "background", "factor", "onto", "no-filter", "threshold", "route",
                    "oversample", "overlap", "color"},
                   "for points");
+    readStackRequest(line, request.input);  // refuses
     request.kind = static_cast<PointKind>(line.choice("points", {"auto", "balls", "surface"}, 0));
     if (line.has("radius")) request.radius = line.number("radius", {.low = 0, .lowOpen = true}, 1);
     if (request.radius && request.kind == PointKind::Surface) {
@@ -79,9 +85,15 @@ PointRequest parsePoints(const CommandLine& line) {
                                           "' holds points; expected density, level-set or fog");
     }
     request.as = readOutputKind(line).value_or(OutputKind());
+    density.shard = readShard(line);
+    if (!density.shard.isWhole() && request.as.kind != OutputKind::Kind::Density) {
+        throw Error(ErrorKind::Usage,
+                    "--as level-set or fog needs the whole, and --shard asks for a part; convert "
+                    "what is merged");
+    }
     request.levels = readDetailLevels(line);
     request.write.half = line.has("half");
-    request.write.compression = readCompression(line);
+    if (!request.array) request.write.compression = readCompression(line);
     return request;
 }
 
@@ -226,11 +238,14 @@ void convertPoints(ConvertJob& job) {
     PointRequest request = parsePoints(job.line());
     if (!job.begin()) return;
     CommandRun& run = job.run();
-    AtomicFile output(request.output);
+    std::optional<AtomicFile> output;
+    if (!request.array) output.emplace(request.output);
     DensityResult density = densityOfPoints(run, request);
     finishPoints(run, request, density);
-    if (request.mesh) return writeMeshOutput(job, output, *request.mesh, density.grid, nullptr);
-    openvdb::GridCPtrVec written{makeOutput(run, request.as, density.grid)};
+    if (request.mesh) return writeMeshOutput(job, *output, *request.mesh, density.grid, nullptr);
+    const auto made = makeOutput(run, request.as, density.grid);
+    if (request.array) return request.array->write(run, *made);
+    openvdb::GridCPtrVec written{made};
     if (request.levels > 0) {
         ResampleOptions options;
         options.filter = request.density.filter;
@@ -241,7 +256,7 @@ void convertPoints(ConvertJob& job) {
             written.push_back(level);
         }
     }
-    job.writeVolume(output, written, request.write);
+    job.writeVolume(*output, written, request.write);
 }
 
 }  // namespace bandvox::app

@@ -6,6 +6,7 @@
 #include "convert_stamp.h"
 #include "convert_to_mesh.h"
 #include "mesh_output.h"
+#include "stack_input.h"
 #include "standard_streams.h"
 #include "words.h"
 
@@ -17,7 +18,6 @@
 #include <bandvox/mesh/density_to_mesh.h>
 #include <bandvox/mesh/write_mesh.h>
 #include <bandvox/resample/resample_grid.h>
-#include <bandvox/source/array_source.h>
 #include <bandvox/source/shapes.h>
 
 #include <algorithm>
@@ -91,7 +91,9 @@ void addLatticeDefaults(const CommandLine& line, const Add& add) {
     for (const char* name : {"resolution", "voxel-size", "factor", "onto", "grid", "iso"}) {
         add(name, "");
     }
-    if (isArrayFile(line.positional(0))) add("background", "0");
+    if (!isStackInput(line.positional(0))) return;
+    add("background", "0");
+    for (const char* name : {"channel", "series", "spacing", "origin"}) add(name, "");
 }
 
 // Of a solid, whatever it comes from, that becomes a density.
@@ -262,7 +264,7 @@ Conversion conversionOf(const CommandLine& line) {
         return toMesh ? Conversion::GridSolidToMesh : Conversion::GridSolidToVolume;
     }
     if (convertsGridToMesh(line)) return Conversion::VolumeToMesh;
-    if (!isShape(input) && (extensionOf(input) == ".vdb" || isArrayFile(input))) {
+    if (!isShape(input) && (extensionOf(input) == ".vdb" || isStackInput(input))) {
         return Conversion::VolumeToVolume;
     }
     if (takesPoints(line)) {
@@ -329,7 +331,8 @@ CommandLine withLikedSettings(const CommandLine& line) {
     // --as and --threshold, which are among them, can decide what the conversion is.
     CommandLine all = line;
     for (const auto& [name, setting] : settings) {
-        if (!setting.isDefault && !line.decides(name) && setting.value != "false") {
+        const bool isGiven = !setting.isDefault && name != "shard" && setting.value != "false";
+        if (isGiven && !line.decides(name)) {
             all.setUndecided(name, setting.value, *file);
         }
     }
@@ -341,6 +344,7 @@ CommandLine withLikedSettings(const CommandLine& line) {
     const Settings known = defaultsOf(isSame ? all : line, conversion);
     CommandLine liked = line;
     for (const auto& [name, setting] : settings) {
+        if (name == "shard") continue;  // the whole is like the part
         const OptionEntry* option = findOption(line.table(), name);
         if (option == nullptr) {
             throw Error(ErrorKind::Input, "'" + *file + "' was made with --" + name +

@@ -5,12 +5,14 @@
 
 #include "color_grid.h"
 #include "command_run.h"
+#include "convert_to_array.h"
 #include "convert_volume.h"
 #include "density_report.h"
 #include "iso_option.h"
 #include "mesh_output.h"
 #include "output_kind.h"
 #include "solid_input.h"
+#include "stack_input.h"
 #include "standard_streams.h"
 #include "volume_options.h"
 #include "words.h"
@@ -28,6 +30,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -59,7 +62,8 @@ struct ConvertRequest {
     int rowsPerVoxel = SoupDensityOptions().rowsPerVoxel;   // of that of the winding number
     std::optional<double> samplingTolerance;                ///< if it was asked for
     VdbWriteOptions write;
-    std::optional<MeshOutput> mesh;  ///< instead of the density
+    std::optional<MeshOutput> mesh;      ///< instead of the density
+    std::unique_ptr<ArrayOutput> array;  ///< the same
     IsoOption iso;
     OutputKind kind;
 };
@@ -104,7 +108,9 @@ ConvertRequest parseConvert(const CommandLine& line) {
     ConvertRequest request;
     request.input = line.positional(0);
     const std::string output = line.requiredText("output");
-    request.mesh = readVdbOrMeshOutput(line);
+    request.array = ArrayOutput::read(line);
+    if (!request.array) request.mesh = readVdbOrMeshOutput(line);
+    readStackRequest(line, request.input);  // refuses
     request.output = outputPath(output);
 
     for (const char* name : {"grid", "background", "factor", "onto", "no-filter", "threshold"}) {
@@ -140,8 +146,14 @@ ConvertRequest parseConvert(const CommandLine& line) {
                                           "' is a built-in shape, which has none");
     }
     request.levels = readDetailLevels(line);
+    density.shard = readShard(line);
+    if (!density.shard.isWhole() && request.kind.kind != OutputKind::Kind::Density) {
+        throw Error(ErrorKind::Usage,
+                    "--as level-set or fog needs the whole, and --shard asks for "
+                    "a part; convert what is merged");
+    }
     request.write.half = line.has("half");
-    request.write.compression = readCompression(line);
+    if (!request.array) request.write.compression = readCompression(line);
     return request;
 }
 
@@ -287,7 +299,8 @@ void convertSolid(ConvertJob& job) {
     requireMeshOrShape("convert", request.input);
     if (!job.begin()) return;
     CommandRun& run = job.run();
-    AtomicFile output(request.output);
+    std::optional<AtomicFile> output;
+    if (!request.array) output.emplace(request.output);
 
     ConvertedGrids grids = isShape(request.input) ? ConvertedGrids{shapeToDensity(run, request), {}}
                                                   : meshToGrids(run, request);
@@ -309,14 +322,16 @@ void convertSolid(ConvertJob& job) {
 
     if (request.mesh) {
         const auto colors = grids.color ? grids.color->grid : nullptr;
-        return writeMeshOutput(job, output, *request.mesh, result.grid, colors);
+        return writeMeshOutput(job, *output, *request.mesh, result.grid, colors);
     }
-    openvdb::GridCPtrVec written{makeOutput(run, request.kind, result.grid)};
+    const auto made = makeOutput(run, request.kind, result.grid);
+    if (request.array) return request.array->write(run, *made);
+    openvdb::GridCPtrVec written{made};
     if (request.levels > 0) {
         for (const auto& level : makeLevels(run, request, result.grid)) written.push_back(level);
     }
     if (grids.color) written.push_back(grids.color->grid);
-    job.writeVolume(output, written, request.write);
+    job.writeVolume(*output, written, request.write);
 }
 
 }  // namespace bandvox::app

@@ -1,5 +1,6 @@
 #include "convert_stamp.h"
 
+#include "convert_to_array.h"
 #include "option_values.h"
 
 #include <bandvox/mesh/write_mesh.h>
@@ -72,7 +73,7 @@ ConvertStamp fromNotes(const std::vector<std::string>& notes) {
 }
 
 bool holdsStamp(const std::filesystem::path& path) {
-    return !isWritableMesh(path) || holdsNotes(path);
+    return isWritableMesh(path) ? holdsNotes(path) : !isArrayOutput(path.string());
 }
 
 }  // namespace bandvox::app

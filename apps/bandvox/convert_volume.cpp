@@ -6,9 +6,11 @@
 #include "choose_grid.h"
 #include "command_run.h"
 #include "convert_grid_solid.h"
+#include "convert_to_array.h"
 #include "iso_option.h"
 #include "lattice_request.h"
 #include "mesh_output.h"
+#include "stack_input.h"
 #include "standard_streams.h"
 #include "volume_options.h"
 #include "words.h"
@@ -24,6 +26,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -46,6 +49,8 @@ struct VolumeRequest {
     ResampleOptions resample;
     IsoOption iso;
     int levels = 0;
+    StackRequest stack;
+    std::unique_ptr<ArrayOutput> array;  // instead of a .vdb file
     VdbWriteOptions write;
 };
 
@@ -53,7 +58,8 @@ VolumeRequest parseVolume(const CommandLine& line) {
     VolumeRequest request;
     request.input = line.positional(0);
     const std::string output = line.requiredText("output");
-    if (readVdbOrMeshOutput(line)) {
+    request.array = ArrayOutput::read(line);
+    if (!request.array && readVdbOrMeshOutput(line)) {
         throw Error(ErrorKind::Usage, "a mesh is made of a .vdb file, and '" + request.input +
                                           "' is an array; convert it to a .vdb file first");
     }
@@ -66,7 +72,8 @@ VolumeRequest parseVolume(const CommandLine& line) {
     }
     refuseOptions(line, {"band", "points", "radius"}, "with the values of a volume");
     request.grid = line.text("grid");
-    if (line.has("background") && !isArrayFile(request.input)) {
+    request.stack = readStackRequest(line, request.input);
+    if (line.has("background") && !isStackInput(request.input)) {
         throw Error(ErrorKind::Usage, "--background is for arrays, and '" + request.input +
                                           "' says itself what its own is");
     }
@@ -90,8 +97,13 @@ VolumeRequest parseVolume(const CommandLine& line) {
     request.resamples = filters || !request.lattice.isSame();
     request.iso = readIso(line, {});
     request.levels = readDetailLevels(line);
+    request.resample.shard = readShard(line);
+    if (!request.resample.shard.isWhole() && !request.resamples) {
+        throw Error(ErrorKind::Usage,
+                    "--shard has no meaning where grids are copied; expected a new lattice");
+    }
     request.write.half = line.has("half");
-    request.write.compression = readCompression(line);
+    if (!request.array) request.write.compression = readCompression(line);
     return request;
 }
 
@@ -108,18 +120,28 @@ openvdb::GridPtrVec convertGrid(CommandRun& run, const VolumeRequest& request,
                                 const openvdb::GridBase::Ptr& grid,
                                 const openvdb::math::Transform::ConstPtr& onto) {
     openvdb::GridPtrVec result;
+    const Shard& shard = request.resample.shard;
     if (grid->activeVoxelCount() == 0 || (!request.resamples && request.levels == 0)) {
+        if (shard.index > 1) return {};
         return {grid};
     }
     const auto target = targetFor(*grid, request.lattice, onto);
     if (const auto vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grid)) {
         if (!request.resamples) return {grid};
-        return {resampleVectors(vectors, *target, request.resample, run.progress())};
+        // They are made whole, by the first machine.
+        if (shard.index > 1) return {};
+        ResampleOptions whole = request.resample;
+        whole.shard = {};
+        return {resampleVectors(vectors, *target, whole, run.progress())};
     }
     openvdb::FloatGrid::Ptr floats = asFloatGrid(grid);
     // Filtered distances are none; those of the filtered solid are.
     if (floats && floats->getGridClass() == openvdb::GRID_LEVEL_SET && request.resamples &&
         request.resample.filter && request.levels == 0) {
+        if (!shard.isWhole()) {
+            throw Error(ErrorKind::Usage, "--shard has no meaning for the level set '" +
+                                              grid->getName() + "', which is rebuilt as a whole");
+        }
         return {rebuildLevelSet(run, floats, {request.lattice, onto, request.resample})};
     }
     if (!floats) {
@@ -143,18 +165,14 @@ openvdb::GridPtrVec convertGrid(CommandRun& run, const VolumeRequest& request,
 
 // The grid that an array is.
 openvdb::FloatGrid::Ptr readArray(CommandRun& run, const VolumeRequest& request) {
-    const auto source = openArray(request.input);
-    const ArrayInfo& info = source->info();
-    run.say("array    " + std::to_string(info.size.x()) + " x " + std::to_string(info.size.y()) +
-            " x " + std::to_string(info.size.z()) + " values of type " + info.valueType +
-            (info.hasTransform ? "" : ", of which nothing says how large they are") +
-            (info.space.empty() ? "" : ", axes " + info.space));
+    const auto source = openStack(request.input, request.stack);
+    for (const std::string& words : arrayInWords(source->info())) run.say(words);
     return arrayToGrid(*source, {request.background, 0}, run.progress());
 }
 
 // The grids of the file that are asked for.
 openvdb::GridPtrVec readChosen(CommandRun& run, const VolumeRequest& request) {
-    if (isArrayFile(request.input)) {
+    if (isStackInput(request.input)) {
         if (request.grid) {
             throw Error(ErrorKind::Usage,
                         "--grid is for .vdb files, and '" + request.input + "' is none");
@@ -166,6 +184,7 @@ openvdb::GridPtrVec readChosen(CommandRun& run, const VolumeRequest& request) {
         throw Error(ErrorKind::Input,
                     "'" + request.input + "' has no grids; expected one at least");
     }
+    if (request.array) return {chooseFloatGrid(grids, request.grid, "density", request.input)};
     if (!request.grid) return grids;
     return {chooseGrid(grids, *request.grid, request.input)};
 }
@@ -224,7 +243,8 @@ void convertVolume(ConvertJob& job) {
     const VolumeRequest request = parseVolume(job.line());
     if (!job.begin()) return;
     CommandRun& run = job.run();
-    AtomicFile output(request.output);
+    std::optional<AtomicFile> output;
+    if (!request.array) output.emplace(request.output);
     const openvdb::math::Transform::ConstPtr onto = readOnto(request.lattice);
     run.say("read     " + request.input);
     openvdb::GridPtrVec grids = readChosen(run, request);
@@ -242,11 +262,14 @@ void convertVolume(ConvertJob& job) {
     }
     run.count("grids", written.size());
     run.count("active_voxels", activeVoxels);
-    if (activeVoxels == 0) {
+    if (activeVoxels == 0 && request.resample.shard.isWhole()) {
         throw Error(ErrorKind::Result, "nothing would be written: no grid of '" + request.input +
                                            "' has active voxels that are left");
     }
-    job.writeVolume(output, written, request.write);
+    if (request.array) {
+        return request.array->write(run, dynamic_cast<const openvdb::FloatGrid&>(*written.front()));
+    }
+    job.writeVolume(*output, written, request.write);
 }
 
 }  // namespace bandvox::app

@@ -2,12 +2,28 @@
 
 #include "words.h"
 
+#include <bandvox/grid/join_shards.h>
+
 #include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <cstdint>
 
 namespace bandvox::app {
+
+namespace {
+
+void sayVolume(CommandRun& run, const DensityMetadata& metadata) {
+    const double difference =
+        metadata.sourceVolume != 0
+            ? std::abs(metadata.gridVolume - metadata.sourceVolume) / metadata.sourceVolume
+            : 0;
+    run.say("volume   source " + formatNumber(metadata.sourceVolume, 8) + ", grid " +
+            formatNumber(metadata.gridVolume, 8) + ", relative difference " +
+            formatNumber(difference, 2));
+}
+
+}  // namespace
 
 void sayDensity(CommandRun& run, const DensityResult& result, const std::string& error) {
     const DensityMetadata& metadata = result.metadata;
@@ -26,13 +42,14 @@ void sayDensity(CommandRun& run, const DensityResult& result, const std::string&
              : ", spread over " + std::to_string(result.kernelWidth) + " voxels from " +
                    formatCount(result.surfaceSamples, "surface sample", "surface samples")));
     run.say("error    " + error);
-    const double difference =
-        metadata.sourceVolume != 0
-            ? std::abs(metadata.gridVolume - metadata.sourceVolume) / metadata.sourceVolume
-            : 0;
-    run.say("volume   source " + formatNumber(metadata.sourceVolume, 8) + ", grid " +
-            formatNumber(metadata.gridVolume, 8) + ", relative difference " +
-            formatNumber(difference, 2));
+    if (const auto part = shardMetadata(*result.grid)) {
+        run.say("part     " + std::to_string(part->shard.index) + " of " +
+                std::to_string(part->shard.count) + ", with a volume of " +
+                formatNumber(metadata.gridVolume, 8) + " of " +
+                formatNumber(metadata.sourceVolume, 8));
+    } else {
+        sayVolume(run, metadata);
+    }
 
     run.count("active_voxels", activeVoxels);
     run.count("surface_samples", result.surfaceSamples);

@@ -58,6 +58,21 @@ void printVersion() {
     writeResult(std::string("bandvox ") + version() + "\n");
 }
 
+// Runs a command. What the library finds wrong with its one input names that.
+void runNamed(const Command& command, const CommandLine& line) {
+    try {
+        command.run(line);
+    } catch (const Error& error) {
+        const std::string message = error.what();
+        const std::vector<std::string>& inputs = line.positionals();
+        const bool isNamed = error.kind() != ErrorKind::Input || inputs.size() != 1 ||
+                             message.starts_with("frame ") ||
+                             message.find(inputs.front()) != std::string::npos;
+        if (isNamed) throw;
+        throw Error(error.kind(), inputs.front() + ": " + message);
+    }
+}
+
 void runCommand(const std::vector<std::string>& arguments) {
     if (arguments.empty() || arguments[0] == "--help" || arguments[0] == "-h") {
         return printHelp({});
@@ -71,7 +86,7 @@ void runCommand(const std::vector<std::string>& arguments) {
     if (line.has("help")) return printHelp({command.table().name});
     if (line.has("version")) return printVersion();
     line.requirePositionals();
-    command.run(line);
+    runNamed(command, line);
 }
 
 int fail(const std::string& message, int status) {

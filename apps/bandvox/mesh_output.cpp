@@ -53,7 +53,9 @@ OptionEntry meshOrVdbOutputEntry() {
         "FILE",
         "",
         "The .vdb file to write, stdout.vdb is the standard output; or a mesh of the surface (" +
-            joined(writableMeshExtensions(), " ") + "). Needed.",
+            joined(writableMeshExtensions(), " ") +
+            "), an array (.npy .nrrd .nhdr .mha .mhd), or images of slices (out.####.png, .exr or "
+            ".tif; one .tif). Needed.",
         "Output"};
 }
 

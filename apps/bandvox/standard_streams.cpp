@@ -5,14 +5,16 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <iostream>
+#include <iterator>
 
 namespace bandvox::app {
 namespace {
 
 // Named as in vdb_tool.
 constexpr const char* kStandardInput = "stdin.vdb";
-constexpr const char* kStandardOutput = "stdout.vdb";
+constexpr const char* kStandardOutputs[] = {"stdout.vdb", "stdout.npy", "stdout.nrrd"};
 
 }  // namespace
 
@@ -37,11 +39,15 @@ std::filesystem::path outputPath(const std::string& name) {
                     "option --output is 'stdin.vdb', the standard input; expected a file, or "
                     "stdout.vdb for the standard output");
     }
-    if (name != kStandardOutput) return name;
+    if (std::find(std::begin(kStandardOutputs), std::end(kStandardOutputs), name) ==
+        std::end(kStandardOutputs)) {
+        return name;
+    }
     if (isatty(STDOUT_FILENO)) {
         throw Error(ErrorKind::Usage,
-                    "stdout.vdb is the standard output, and that is a terminal; expected a file or "
-                    "a pipe");
+                    name +
+                        " is the standard output, and that is a terminal; expected a file or "
+                        "a pipe");
     }
     return "/dev/stdout";
 }

@@ -14,7 +14,8 @@ bool isStandardInput(const std::string& name);
 /// readVdb does, and Error(ErrorKind::Usage) if the standard input is a terminal.
 openvdb::GridPtrVec readGrids(const std::string& name);
 
-/// The path to write to for a name given to --output: "stdout.vdb" names the standard output.
+/// The path to write to for a name given to --output: "stdout.vdb" names the standard output,
+/// as do "stdout.npy" and "stdout.nrrd".
 /// Throws Error(ErrorKind::Usage) if that is a terminal, or for "stdin.vdb".
 std::filesystem::path outputPath(const std::string& name);
 

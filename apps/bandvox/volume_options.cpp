@@ -1,8 +1,10 @@
 #include "volume_options.h"
 
+#include "mesh_output.h"
 #include "words.h"
 
 #include <bandvox/core/error.h>
+#include <bandvox/mesh/write_mesh.h>
 
 #include <array>
 
@@ -37,6 +39,36 @@ OptionEntry vdbOutputEntry() {
 
 OptionEntry compressionEntry() {
     return {"compression", 0, "KIND", "blosc", "blosc, zip or none.", "Output"};
+}
+
+OptionEntry shardEntry() {
+    return {
+        "shard",
+        0,
+        "I/N",
+        "",
+        "Make part I of N only, from 1, as one of several machines. `bandvox merge` joins the N "
+        "files to what one machine would have made.",
+        "Output"};
+}
+
+Shard readShard(const CommandLine& line) {
+    if (!line.has("shard")) return {};
+    const auto numbers = line.wholeNumbers("shard", 2, '/');
+    const Shard shard{(*numbers)[0], (*numbers)[1]};
+    if (shard.index < 1 || shard.index > shard.count || shard.count > 100'000) {
+        line.fail("shard", "a part from 1 and the number of all, as in 2/8");
+    }
+    refuseOptions(line, {"lod", "band"}, "with --shard: it needs the whole");
+    if (line.text("iso") == "volume") {
+        throw Error(ErrorKind::Usage,
+                    "--iso volume has no meaning with --shard: it needs the whole");
+    }
+    if (isWritableMesh(line.text("output").value_or(""))) {
+        throw Error(ErrorKind::Usage,
+                    "--shard is for .vdb files as the output, and this is a mesh");
+    }
+    return shard;
 }
 
 void readSize(const CommandLine& line, int& resolution, double& voxelSize) {

@@ -3,6 +3,7 @@
 #include "command_line.h"
 #include "option_table.h"
 
+#include <bandvox/core/shard.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/spectral/exponential_filter.h>
 
@@ -23,6 +24,13 @@ void readSize(const CommandLine& line, int& resolution, double& voxelSize);
 /// --cutoff and --order.
 std::vector<OptionEntry> filterEntries(const ExponentialFilter& standard);
 ExponentialFilter readFilter(const CommandLine& line, ExponentialFilter standard = {});
+
+/// The option --shard: the part of the volume that is made.
+OptionEntry shardEntry();
+
+/// Throws Error(ErrorKind::Usage) for parts that there cannot be, and for options that need the
+/// whole.
+Shard readShard(const CommandLine& line);
 
 VdbWriteOptions::Compression readCompression(const CommandLine& line);
 

@@ -1,6 +1,8 @@
 // Image files by OpenImageIO: a module beside the library, or a part of it where that is static.
 #include "core/image_library.h"
 
+#include "image_modules.h"
+
 #include <bandvox/core/error.h>
 
 #include <OpenImageIO/color.h>
@@ -154,6 +156,20 @@ class OpenImageIo final : public ImageLibrary {
         StreamProxy proxy(stream);
         const std::string failure = encode(image, proxy);
         return {failure, proxy.failure()};
+    }
+
+    std::unique_ptr<SliceFile> openSlices(const std::filesystem::path& path,
+                                          int threads) const override {
+        return openSliceFile(path, threads);
+    }
+
+    std::unique_ptr<SliceOutput> createSlices(const std::filesystem::path& path,
+                                              const SliceOutputInfo& info) const override {
+        return createSliceFile(path, info);
+    }
+
+    std::unique_ptr<DicomFile> openDicom(const std::filesystem::path& path) const override {
+        return openDicomFile(path);
     }
 
   private:

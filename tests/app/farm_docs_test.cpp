@@ -30,7 +30,7 @@ TEST(FarmPage, LinesDoWhatItSays) {
         said += result.err;
         ++blocks;
     }
-    EXPECT_EQ(blocks, 5);
+    EXPECT_EQ(blocks, 6);
     EXPECT_EQ(countLines(said, "skipped  vol.000"), 3) << said;
     EXPECT_EQ(countLines(said, "redo     vol.000"), 3) << said;
     EXPECT_NE(said.find("resolution was 48, is 40"), std::string::npos) << said;

@@ -122,13 +122,29 @@ TEST_F(Points, WithNormalsAreASurface) {
 }
 
 TEST_F(Points, BecomeMeshesLevelSetsAndLevels) {
-    ASSERT_EQ(convert({"two.csv", "-o", "out.ply", "-r", "60", "--stats", "stats.json"}).status, 0);
+    const RunResult mesh = convert(
+        {"two.csv", "-o", "out.ply", "-r", "60", "--iso", "volume", "--stats", "stats.json"});
+    ASSERT_EQ(mesh.status, 0) << mesh.err;
     const auto stats = nlohmann::json::parse(readText(*sFolder / "stats.json"));
-    EXPECT_NEAR(stats["counts"]["mesh_volume"], 1.125 * kUnitBall, 0.03 * kUnitBall);
+    EXPECT_NEAR(stats["counts"]["mesh_volume"], 1.125 * kUnitBall, 1e-3 * kUnitBall);
     ASSERT_EQ(convert({"two.csv", "-o", "out.vdb", "-r", "60", "--as", "level-set"}).status, 0);
     EXPECT_EQ(read("out.vdb")->getGridClass(), openvdb::GRID_LEVEL_SET);
     ASSERT_EQ(convert({"two.csv", "-o", "out.vdb", "-r", "60", "--lod", "1", "--half"}).status, 0);
     EXPECT_EQ(readVdb(*sFolder / "out.vdb").size(), 2U);
+    ASSERT_EQ(convert({"two.csv", "-o", "out.npy", "-r", "20"}).status, 0);
+    EXPECT_TRUE(readText(*sFolder / "out.npy").starts_with("\x93NUMPY"));
+}
+
+TEST_F(Points, ComeInParts) {
+    ASSERT_EQ(convert({"two.csv", "-o", "whole.vdb", "-r", "60"}).status, 0);
+    double sum = 0;
+    for (const char* part : {"1/2", "2/2"}) {
+        const RunResult result =
+            convert({"two.csv", "-o", "part.vdb", "-r", "60", "--shard", part});
+        ASSERT_EQ(result.status, 0) << result.err;
+        sum += densityIntegral(*read("part.vdb"));
+    }
+    EXPECT_NEAR(sum, densityIntegral(*read("whole.vdb")), 1e-6 * kUnitBall);
 }
 
 TEST_F(Points, WarnOfBallsThatAreTooSmall) {

@@ -219,7 +219,8 @@ TEST_F(ArrayFile, RefusesWhatIsNone) {
     const std::string raw = valueBytes<std::int16_t>();
     const std::string good = "{'descr': '<i2', 'fortran_order': True, 'shape': (5, 3, 4), }";
     expectRefused(mFolder / "none.npy", "cannot be opened");
-    expectRefused(mFolder, "expected .npy");
+    expectRefused(mFolder, "without images");
+    expectRefused(write("none.txt", "hello"), "expected .npy");
     expectRefused(write("short.npy", npy(good) + raw.substr(1)), "too early");
     expectRefused(write("text.npy", "hello, this is text"), "NUMPY");
     expectRefused(write("head.npy", npy(good).substr(0, 30)), "header");

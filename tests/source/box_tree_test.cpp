@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <random>
 #include <set>
 
@@ -31,41 +30,7 @@ TEST(BoxTree, FindsWhatASlowSearchFinds) {
                 const BBoxd line(p, Vec3d(10.0, p.y(), p.z()));
                 EXPECT_EQ(found.count(i) == 1, boxes[i].hasOverlap(line));
             }
-
-            const double square = 0.01 * trial / 50;
-            found.clear();
-            tree.visitNearer(p, square,
-                             [&](std::uint32_t i) { EXPECT_TRUE(found.insert(i).second); });
-            for (std::uint32_t i = 0; i < boxes.size(); ++i) {
-                const Vec3d nearest = openvdb::math::maxComponent(
-                    boxes[i].min(), openvdb::math::minComponent(boxes[i].max(), p));
-                EXPECT_EQ(found.count(i) == 1, (nearest - p).lengthSqr() < square);
-            }
         }
-    }
-}
-
-TEST(BoxTree, FindsTheNearestWhileTheDistanceFalls) {
-    std::mt19937 random(5);
-    std::uniform_real_distribution<double> coordinate(-1.0, 1.0);
-    std::vector<BBoxd> points;
-    for (int i = 0; i < 500; ++i) {
-        const Vec3d p(coordinate(random), coordinate(random), coordinate(random));
-        points.emplace_back(p, p);
-    }
-    const BoxTree tree(points);
-    for (int trial = 0; trial < 50; ++trial) {
-        const Vec3d p(coordinate(random), coordinate(random), coordinate(random));
-        double square = 12;
-        int visited = 0;
-        tree.visitNearer(p, square, [&](std::uint32_t i) {
-            square = (points[i].min() - p).lengthSqr();
-            ++visited;
-        });
-        double least = 12;
-        for (const BBoxd& point : points) least = std::min(least, (point.min() - p).lengthSqr());
-        EXPECT_EQ(square, least);
-        EXPECT_LT(visited, 100);
     }
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <random>
 #include <string>
 #include <utility>
 
@@ -23,6 +24,30 @@ inline void append(Mesh& mesh, const Mesh& other) {
 
 inline Mesh reversed(Mesh mesh) {
     for (openvdb::Vec3I& t : mesh.triangles) std::swap(t[1], t[2]);
+    return mesh;
+}
+
+/// Triangles, segments and points, as they come.
+inline Mesh soup(unsigned seed, int triangles) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> place(0, 1);
+    Mesh mesh;
+    for (int i = 0; i < triangles; ++i) {
+        const openvdb::Vec3d at(place(random), place(random), place(random));
+        for (int k = 0; k < 3; ++k) {
+            const openvdb::Vec3d aside(place(random), place(random), place(random));
+            mesh.points.push_back(at + 0.3 * aside);
+        }
+        const auto first = static_cast<unsigned>(3 * i);
+        // Now and then a segment, or a point.
+        if (i % 11 == 5) {
+            mesh.triangles.emplace_back(first, first + 1, first);
+        } else if (i % 11 == 7) {
+            mesh.triangles.emplace_back(first, first, first);
+        } else {
+            mesh.triangles.emplace_back(first, first + 1, first + 2);
+        }
+    }
     return mesh;
 }
 

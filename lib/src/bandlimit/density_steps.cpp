@@ -6,6 +6,7 @@
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/version.h>
+#include <bandvox/grid/join_shards.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,6 +25,7 @@ constexpr double kLargestVoxel = 1e60;  // world units; the volumes of many are 
 
 void requireValid(const DensityOptions& options) {
     requireValid(options.filter);
+    requireValid(options.shard);
     if (options.voxelSize == 0 &&
         (options.resolution < 1 || options.resolution > kHighestResolution)) {
         throw Error(ErrorKind::Usage, "the resolution is " + std::to_string(options.resolution) +
@@ -99,10 +101,12 @@ void finishGrid(std::vector<ColumnBlocks>& columns, const TileLayout& layout,
     DensityMetadata& metadata = result.metadata;
     {
         const ProgressStage stage(progress, "assembling", 0);
-        result.grid = assembleGrid(columns, layout, {geometry.threshold, metadata.clamped});
+        result.grid = assembleGrid(
+            columns, layout,
+            {geometry.threshold, metadata.clamped, /*isPart=*/!options.shard.isWhole()});
     }
     progress.throwIfInterrupted();
-    if (result.grid->tree().empty()) {
+    if (result.grid->tree().empty() && options.shard.isWhole()) {
         throw Error(ErrorKind::Result, metadata.source + ": no voxel's density exceeds " +
                                            inShort(geometry.threshold) +
                                            "; the grid would be empty");
@@ -118,6 +122,7 @@ void finishGrid(std::vector<ColumnBlocks>& columns, const TileLayout& layout,
     metadata.tolerance = options.tolerance;
     metadata.gridVolume = densityIntegral(*result.grid);
     setDensityMetadata(*result.grid, metadata);
+    setShardMetadata(*result.grid, {options.shard, result.overlaps, result.refinements});
     result.tileSide = geometry.side;
     result.halo = geometry.halo;
 }

@@ -61,9 +61,9 @@ double estimateMemory(const FieldSource& source, const TileGeometry& geometry,
            threadCount() * perThread;
 }
 
-// Fills all columns of tiles, in parallel.
-std::vector<ColumnBlocks> fillColumns(const FieldSampling& sampling, FieldStatistics& statistics,
-                                      Progress& progress) {
+// Fills the columns of tiles of a part, in parallel.
+std::vector<ColumnBlocks> fillColumns(const FieldSampling& sampling, const Shard& shard,
+                                      FieldStatistics& statistics, Progress& progress) {
     const openvdb::Coord& tiles = sampling.layout.count;
     const std::int64_t count = static_cast<std::int64_t>(tiles.y()) * tiles.z();
     std::vector<ColumnBlocks> columns(count);
@@ -71,6 +71,7 @@ std::vector<ColumnBlocks> fillColumns(const FieldSampling& sampling, FieldStatis
     WorkerPool<FieldColumn> pool([&] { return std::make_unique<FieldColumn>(sampling); });
     const ProgressStage stage(progress, "band-limiting", count * tiles.x());
     parallelFor(count, [&](std::int64_t i) {
+        if (!shard.holds(i, count)) return progress.advance(tiles.x());
         std::unique_ptr<FieldColumn> worker = pool.take();
         columns[i] = worker->fill(static_cast<int>(i / tiles.z()), static_cast<int>(i % tiles.z()),
                                   perColumn[i], progress);
@@ -123,7 +124,7 @@ DensityResult fieldToDensity(const FieldSource& source, const FieldDensityOption
     FieldStatistics statistics;
     std::vector<ColumnBlocks> columns =
         fillColumns({source, layout, options.oversample, fine, coarse ? &*coarse : nullptr},
-                    statistics, progress);
+                    density.shard, statistics, progress);
 
     // Join the columns to one grid.
     DensityMetadata& metadata = result.metadata;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <tuple>
 
 namespace bandvox {
@@ -66,6 +67,19 @@ bool finishLeaf(DensityLeaf& leaf, const AssemblyOptions& options) {
     return !active.isOff();
 }
 
+// Calls visit(cube) for the cubes of this side, at multiples of it, that reach into a box.
+template <typename Visit>
+void forEachCube(const openvdb::CoordBBox& within, int side, const Visit& visit) {
+    const openvdb::Coord low = within.min() & ~(side - 1);
+    for (int x = low.x(); x <= within.max().x(); x += side) {
+        for (int y = low.y(); y <= within.max().y(); y += side) {
+            for (int z = low.z(); z <= within.max().z(); z += side) {
+                visit(openvdb::CoordBBox::createCube(openvdb::Coord(x, y, z), side));
+            }
+        }
+    }
+}
+
 // Makes tiles of what lies in far tiles only: cubes of 128³ voxels, and blocks of 8³ elsewhere.
 void addFarTiles(const FarTiles& far, bool clamp, openvdb::FloatTree& tree) {
     using Node = openvdb::FloatTree::RootNodeType::ChildNodeType::ChildNodeType;
@@ -75,16 +89,6 @@ void addFarTiles(const FarTiles& far, bool clamp, openvdb::FloatTree& tree) {
         if (clamp) value = std::clamp(value, 0.0F, 1.0F);
         if (value != 0) tree.addTile(level, origin, value, /*active=*/true);
     };
-    const auto forEachCube = [](const openvdb::CoordBBox& within, int side, const auto& visit) {
-        const openvdb::Coord low = within.min() & ~(side - 1);
-        for (int x = low.x(); x <= within.max().x(); x += side) {
-            for (int y = low.y(); y <= within.max().y(); y += side) {
-                for (int z = low.z(); z <= within.max().z(); z += side) {
-                    visit(openvdb::CoordBBox::createCube(openvdb::Coord(x, y, z), side));
-                }
-            }
-        }
-    };
     forEachCube(box, kNode, [&](const openvdb::CoordBBox& cube) {
         if (const auto value = far.valueIn(cube)) return add(2, cube.min(), *value);
         openvdb::CoordBBox part = cube;
@@ -92,6 +96,23 @@ void addFarTiles(const FarTiles& far, bool clamp, openvdb::FloatTree& tree) {
         forEachCube(part, DensityLeaf::DIM, [&](const openvdb::CoordBBox& block) {
             if (const auto value = far.valueIn(block)) add(1, block.min(), *value);
         });
+    });
+}
+
+// Keeps of blocks that go on in columns of others what far tiles have here: there is no piece of
+// them that it could be added to.
+void addBordersOfPart(const FarTiles& far, const AssemblyOptions& options,
+                      openvdb::FloatTree& tree) {
+    const openvdb::CoordBBox box = far.voxels();
+    openvdb::tree::ValueAccessor<openvdb::FloatTree> accessor(tree);
+    forEachCube(box, DensityLeaf::DIM, [&](const openvdb::CoordBBox& block) {
+        if (far.valueIn(block) || accessor.probeConstLeaf(block.min()) ||
+            accessor.isValueOn(block.min())) {
+            return;
+        }
+        auto leaf = std::make_unique<DensityLeaf>(block.min(), 0.0F);
+        far.complete(*leaf);
+        if (finishLeaf(*leaf, options)) accessor.addLeaf(leaf.release());
     });
 }
 
@@ -128,6 +149,7 @@ openvdb::FloatGrid::Ptr assembleGrid(std::vector<ColumnBlocks>& columns, const T
     for (std::unique_ptr<DensityLeaf>& leaf : leaves) {
         if (leaf) tree.addLeaf(leaf.release());
     }
+    if (options.isPart) addBordersOfPart(far, options, tree);
     openvdb::tools::pruneTiles(tree, 0.0F, /*threaded=*/false);
     grid->setTransform(openvdb::math::Transform::createLinearTransform(layout.voxelSize));
     return grid;

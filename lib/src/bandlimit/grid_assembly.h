@@ -8,8 +8,10 @@
 namespace bandvox {
 
 struct AssemblyOptions {
-    double threshold;  ///< values nearer to a whole number than this are stored as it
-    bool clamp;        ///< limit values to [0, 1]
+    double threshold;     ///< values nearer to a whole number than this are stored as it
+    bool clamp;           ///< limit values to [0, 1]
+    bool isPart = false;  ///< there are columns that others fill; of blocks that go on in them
+                          ///< what is here is kept
 };
 
 /// Joins the columns of a grid, in the order of the layout's (y, z): completes the blocks at their

@@ -11,6 +11,7 @@
 #include <bandvox/core/parallel.h>
 #include <bandvox/core/version.h>
 #include <bandvox/grid/density_grid.h>
+#include <bandvox/grid/join_shards.h>
 
 #include <algorithm>
 #include <cmath>
@@ -107,7 +108,8 @@ double estimateMemory(const PaintedSurface& surface, const TilePlan& plan, const
 
 std::vector<ColorBlocks> fillColorColumns(const ColoredMesh& mesh, const PaintedSurface& surface,
                                           const TilePlan& plan, const TileLayout& layout,
-                                          const TileFilter& filter, Progress& progress) {
+                                          const TileFilter& filter, const Shard& shard,
+                                          Progress& progress) {
     const auto boundsOf = [&](std::size_t i) {
         openvdb::BBoxd box;
         const openvdb::Vec3I& t = mesh.mesh.triangles[surface.triangles[i]];
@@ -123,6 +125,7 @@ std::vector<ColorBlocks> fillColorColumns(const ColoredMesh& mesh, const Painted
     const ProgressStage stage(progress, "colouring", count);
     parallelFor(count, [&](std::int64_t i) {
         progress.throwIfInterrupted();
+        if (!shard.holds(i, count)) return progress.advance();
         const int y = static_cast<int>(i / layout.count.z());
         const int z = static_cast<int>(i % layout.count.z());
         std::vector<std::uint32_t> triangles;
@@ -173,6 +176,7 @@ ColorResult surfaceToColor(const ColoredMesh& mesh, const ColorOptions& options,
                            Progress& progress) {
     // Decide how the work is cut up, and whether it fits.
     requireValid(options.filter);
+    requireValid(options.shard);
     if (!(options.voxelSize > 0)) {
         throw Error(ErrorKind::Usage, "the voxel size is " + inShort(options.voxelSize) +
                                           "; it must be positive, in world units");
@@ -186,7 +190,7 @@ ColorResult surfaceToColor(const ColoredMesh& mesh, const ColorOptions& options,
     requireMemory(estimateMemory(surface, plan, layout, filter), wanted.c_str());
 
     std::vector<ColorBlocks> columns =
-        fillColorColumns(mesh, surface, plan, layout, filter, progress);
+        fillColorColumns(mesh, surface, plan, layout, filter, options.shard, progress);
     ColorResult result;
     for (const ColorBlocks& column : columns) {
         result.tiles += column.tiles;
@@ -194,7 +198,7 @@ ColorResult surfaceToColor(const ColoredMesh& mesh, const ColorOptions& options,
     }
     result.grid = joinColumns(columns, options.voxelSize);
     progress.throwIfInterrupted();
-    if (result.grid->tree().empty()) {
+    if (result.grid->tree().empty() && options.shard.isWhole()) {
         throw Error(ErrorKind::Result, mesh.name +
                                            ": the coloured surface is too small for any voxel; the "
                                            "grid of colours would be empty");
@@ -203,6 +207,7 @@ ColorResult surfaceToColor(const ColoredMesh& mesh, const ColorOptions& options,
     result.grid->setVectorType(openvdb::VEC_INVARIANT);
     result.grid->setCreator(std::string("bandvox ") + version());
     setSourceMetadata(*result.grid, mesh.name);
+    setShardMetadata(*result.grid, {options.shard, false, 0});
     return result;
 }
 

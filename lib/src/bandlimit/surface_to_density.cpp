@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 namespace bandvox {
 
@@ -56,17 +57,36 @@ double estimateWorkMemory(const BoundarySource& source, const TilePlan& plan,
     return memoryOfColumns(layout) + bins + threadCount() * perThread;
 }
 
-// Fills all columns, so that they are whole numbers away from the surface to within `allowed`.
+/// Which columns are filled, and how well.
+struct ColumnWork {
+    std::vector<bool> wanted;  ///< empty for all
+    double allowed;            ///< distance from whole numbers away from the surface
+};
+
+// The columns of a part of the grid.
+std::vector<bool> columnsOf(const Shard& shard, const TileLayout& layout) {
+    if (shard.isWhole()) return {};
+    const std::int64_t count = static_cast<std::int64_t>(layout.count.y()) * layout.count.z();
+    std::vector<bool> wanted(static_cast<std::size_t>(count));
+    for (std::int64_t i = 0; i < count; ++i) {
+        wanted[static_cast<std::size_t>(i)] = shard.holds(i, count);
+    }
+    return wanted;
+}
+
+// Fills columns, so that they are whole numbers away from the surface to within what is allowed.
 //
 // The quadrature takes the errors of a mesh's elements for independent. Of thousands that are alike
 // and share a voxel, as of a comb finer than the lattice, they add up: then it has to be finer.
 FilledColumns fillToTolerance(const BoundarySource& source, TilePlan plan, const TileLayout& layout,
-                              const TileFilter& filter, double allowed, Progress& progress) {
+                              const TileFilter& filter, const ColumnWork& work, int& refinements,
+                              Progress& progress) {
     for (int attempt = 0;; ++attempt) {
         FilledColumns columns =
-            fillColumns(source, plan, layout, filter, "band-limiting", progress);
+            fillColumns(source, plan, layout, filter, "band-limiting", progress, work.wanted);
         const double error = columns.total().closureError;
-        if (error <= allowed) return columns;
+        refinements = attempt;
+        if (error <= work.allowed) return columns;
         if (attempt == kMostRefinements || !(error <= kErrorOfHole)) {
             throw Error(ErrorKind::Result,
                         source.name() + ": the density is off by " + inShort(error) +
@@ -117,14 +137,17 @@ DensityResult surfaceToDensity(const BoundarySource& source, const DensityOption
     DensityResult result;
     warnOfFilter(options.filter, options.tolerance, result.warnings);
     // What the lattice cannot hold keeps ringing away from the surface; it was warned of.
-    FilledColumns columns =
-        fillToTolerance(source, plan, layout, filter,
-                        std::max(options.tolerance, options.filter.atNyquist()), progress);
+    FilledColumns columns = fillToTolerance(
+        source, plan, layout, filter,
+        {columnsOf(options.shard, layout), std::max(options.tolerance, options.filter.atNyquist())},
+        result.refinements, progress);
     const ColumnStatistics statistics = columns.total();
-    const bool isOverlapping =
+    result.overlaps =
         !options.sumOverlaps && findOverlap(source, options, layout, columns.statistics, progress);
-    if (isOverlapping) result.warnings.push_back(overlapWarning(statistics));
-    const bool clamp = isOverlapping || options.clamp;
+    // Of a part it is not known whether others overlap; who joins them knows it.
+    const bool isLimited = result.overlaps && options.shard.isWhole();
+    if (isLimited) result.warnings.push_back(overlapWarning(statistics));
+    const bool clamp = isLimited || options.clamp;
 
     // Join the columns to one grid.
     DensityMetadata& metadata = result.metadata;
@@ -134,7 +157,7 @@ DensityResult surfaceToDensity(const BoundarySource& source, const DensityOption
     metadata.sourceVolume = source.volume();
     metadata.clamped = clamp;
     finishGrid(columns.blocks, layout, options, plan, result, progress);
-    if (!clamp) warnOfVolume(metadata, result.warnings);
+    if (!clamp && options.shard.isWhole()) warnOfVolume(metadata, result.warnings);
 
     result.surfaceSamples = statistics.samples;
     result.tiles = statistics.tiles;

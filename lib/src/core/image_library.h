@@ -1,10 +1,14 @@
 #pragma once
 
+#include "core/dicom_files.h"
+#include "core/slice_files.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -46,9 +50,9 @@ struct WriteFailure {
     int diskError = 0;  ///< of the stream, as in errno; 0 if nothing did
 };
 
-/// Reads and writes image files with OpenImageIO. That library depends on hundreds of others, and
-/// loading them takes longer than many a picture, so it lies in a module that is loaded when it is
-/// first needed.
+/// Reads and writes image files with OpenImageIO and DCMTK. These libraries depend on hundreds of
+/// others, and loading them takes longer than many a picture, so it lies in a module that is loaded
+/// when it is first needed.
 class ImageLibrary {
   public:
     virtual ~ImageLibrary() = default;
@@ -68,6 +72,21 @@ class ImageLibrary {
 
     /// Writes 8-bit sRGB with alpha.
     virtual WriteFailure writePng(std::ostream& stream, const PngRows& image) const = 0;
+
+    /// Opens the pages of a file for their values as they are stored, which so many threads may
+    /// unpack. Throws
+    /// Error(ErrorKind::Input), which does not name the file, if it cannot be read or if its pages
+    /// are not alike.
+    virtual std::unique_ptr<SliceFile> openSlices(const std::filesystem::path& path,
+                                                  int threads) const = 0;
+
+    /// Creates a file for pages, replacing what is there. Throws Error(ErrorKind::Runtime), which
+    /// does not name the file.
+    virtual std::unique_ptr<SliceOutput> createSlices(const std::filesystem::path& path,
+                                                      const SliceOutputInfo& info) const = 0;
+
+    /// Opens a DICOM file. Throws Error(ErrorKind::Input), which does not name the file.
+    virtual std::unique_ptr<DicomFile> openDicom(const std::filesystem::path& path) const = 0;
 };
 
 /// Throws Error(ErrorKind::Runtime) if the module cannot be loaded.

@@ -1,6 +1,7 @@
 #include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>
 #include <bandvox/core/parallel.h>
+#include <bandvox/grid/array_box.h>
 #include <bandvox/grid/array_to_grid.h>
 #include <bandvox/grid/density_grid.h>
 
@@ -137,6 +138,8 @@ openvdb::FloatGrid::Ptr arrayToGrid(ArraySource& source, const ArrayGridOptions&
     grid->setName("density");
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     setSourceMetadata(*grid, std::filesystem::path(info.name).filename().string());
+    setArrayBox(*grid, {openvdb::Coord(0), info.size.offsetBy(-1)});
+    if (!info.unit.empty()) grid->insertMeta("bandvox_unit", openvdb::StringMetadata(info.unit));
     if (!info.space.empty()) {
         grid->insertMeta("bandvox_space", openvdb::StringMetadata(info.space));
     }

@@ -51,7 +51,7 @@ class HeldSlices {
         const bool isWithin = middle >= 0 && middle < mInfo.size[mInfo.axes[1]] && slice >= 0 &&
                               slice < mInfo.slices();
         if (!isWithin) return nullptr;
-        const auto held = static_cast<std::size_t>(slice - mFirst + 1);
+        const auto held = static_cast<std::size_t>(slice) + 1 - static_cast<std::size_t>(mFirst);
         return &mValues[held * mPerSlice +
                         static_cast<std::size_t>(middle) * mInfo.size[mInfo.axes[0]]];
     }

@@ -1,5 +1,5 @@
 #include "core/words.h"
-#include "mesh/nearest_triangle.h"
+#include "mesh/triangle_tree.h"
 #include "render/picture_request.h"
 #include "render/surface_field.h"
 
@@ -116,7 +116,7 @@ std::vector<openvdb::Coord> blocksAround(const Mesh& mesh, double halfWidth) {
 class BandFill {
   public:
     BandFill(const DrawableGrid& drawable, const Reconstruction& reconstruction,
-             const NearestTriangle& surface, const LevelSetOptions& options)
+             const TriangleTree& surface, const LevelSetOptions& options)
         : mDrawable(drawable),
           mDensity(drawable.grid->getConstAccessor()),
           mProbe(reconstruction.probe()),
@@ -141,8 +141,8 @@ class BandFill {
         if (side == 1) return fillVoxel(low, guess);
         const double half = 0.5 * (side - 1);
         const Vec3d middle = low.asVec3d() + Vec3d(half);
-        const auto nearest =
-            mSurface.find(middle, mHalfWidth + kLargestCorrection + std::sqrt(3.0) * half, guess);
+        const auto nearest = mSurface.nearestWithin(
+            middle, mHalfWidth + kLargestCorrection + std::sqrt(3.0) * half, guess);
         if (!nearest) return fillOutside(low, side);
         for (int i = 0; i < 8; ++i) {
             const openvdb::Coord part(i & 1, i >> 1 & 1, i >> 2);
@@ -165,10 +165,10 @@ class BandFill {
 
     void fillVoxel(const openvdb::Coord& at, std::optional<std::uint32_t> guess) {
         const Vec3d place = at.asVec3d();
-        const auto nearest = mSurface.find(place, mHalfWidth + kLargestCorrection, guess);
+        const auto nearest = mSurface.nearestWithin(place, mHalfWidth + kLargestCorrection, guess);
         if (!nearest) return setOutside(at);
-        const double toMesh = std::sqrt(nearest->squaredDistance);
-        const double distance = distanceToFoot(*mProbe, mSearch, place, nearest->place);
+        const double toMesh = std::sqrt(nearest->square);
+        const double distance = distanceToFoot(*mProbe, mSearch, place, nearest->point);
         if (distance >= mHalfWidth) return setOutside(at);
         mLargestCorrection = std::max(mLargestCorrection, std::abs(distance - toMesh));
         mLeaf->setValueOn(at, static_cast<float>(sign(at) * distance * mVoxel));
@@ -179,7 +179,7 @@ class BandFill {
     const DrawableGrid& mDrawable;
     openvdb::FloatGrid::ConstAccessor mDensity;
     std::unique_ptr<DensityProbe> mProbe;
-    const NearestTriangle& mSurface;
+    const TriangleTree& mSurface;
     FootSearch mSearch;
     double mHalfWidth, mVoxel;
     std::unique_ptr<BandLeaf> mLeaf;
@@ -187,7 +187,7 @@ class BandFill {
 };
 
 // Adds the band to a tree. Returns the largest correction, voxels.
-double addBand(const DrawableGrid& drawable, const NearestTriangle& surface,
+double addBand(const DrawableGrid& drawable, const TriangleTree& surface,
                const LevelSetOptions& options, openvdb::FloatTree& tree, Progress& progress) {
     PictureOptions reading;
     reading.tolerance = std::max(kReadingShare * options.tolerance, 1e-6);
@@ -233,7 +233,8 @@ LevelSetResult densityToLevelSet(const openvdb::FloatGrid::ConstPtr& grid,
     MeshResult surface = densityToMesh(grid, meshOptions, progress);
     requireCubes(*grid);
 
-    const NearestTriangle mesh(inIndexSpace(std::move(surface.surface.mesh), *grid));
+    const Mesh mesh = inIndexSpace(std::move(surface.surface.mesh), *grid);
+    const TriangleTree tree(mesh);
     LevelSetResult result;
     result.iso = surface.iso;
     result.volume = surface.volume;
@@ -241,7 +242,7 @@ LevelSetResult densityToLevelSet(const openvdb::FloatGrid::ConstPtr& grid,
     result.grid = openvdb::FloatGrid::create(static_cast<float>(background));
     result.grid->setTransform(grid->transform().copy());
     result.largestCorrection =
-        addBand(makeDrawable(grid, options.iso), mesh, options, result.grid->tree(), progress);
+        addBand(makeDrawable(grid, options.iso), tree, options, result.grid->tree(), progress);
     openvdb::tools::signedFloodFill(result.grid->tree());
     result.grid->setName("surface");
     result.grid->setGridClass(openvdb::GRID_LEVEL_SET);

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -51,17 +52,43 @@ class BlockTriangles {
     /// Calls visit(places, triangles) for each ring: its corners, and triples of their numbers.
     template <typename Visit>
     void forEachRing(const BlockValues& values, const Visit& visit) {
+        findInside(values);
         for (int x = 0; x < kBlockSide; ++x) {
             for (int y = 0; y < kBlockSide; ++y) {
-                for (int z = 0; z < kBlockSide; ++z) {
-                    const unsigned inside = values.inside(x, y, z, mIso);
-                    if (inside != 0 && inside != 0xFF) visitCell(values, {x, y, z}, inside, visit);
+                const unsigned rows[] = {mInside[x][y], mInside[x + 1][y], mInside[x][y + 1],
+                                         mInside[x + 1][y + 1]};
+                const unsigned any = rows[0] | rows[1] | rows[2] | rows[3];
+                const unsigned all = rows[0] & rows[1] & rows[2] & rows[3];
+                // Cells whose corners are not all alike.
+                unsigned crossed = (any | any >> 1) & ~(all & all >> 1) & kCellsOfRow;
+                for (; crossed != 0; crossed &= crossed - 1) {
+                    const int z = std::countr_zero(crossed);
+                    unsigned inside = 0;
+                    for (unsigned i = 0; i < 8; ++i) {
+                        inside |= (rows[i & 3] >> (z + (i >> 2)) & 1U) << i;
+                    }
+                    visitCell(values, {x, y, z}, inside, visit);
                 }
             }
         }
     }
 
   private:
+    static constexpr unsigned kCellsOfRow = (1U << kBlockSide) - 1;
+
+    // Of each row of nodes along z which are inside, one bit each.
+    void findInside(const BlockValues& values) {
+        for (int x = 0; x < kBlockNodes; ++x) {
+            for (int y = 0; y < kBlockNodes; ++y) {
+                unsigned row = 0;
+                for (int z = 0; z < kBlockNodes; ++z) {
+                    row |= (values.at(x, y, z) > mIso ? 1U : 0U) << z;
+                }
+                mInside[x][y] = row;
+            }
+        }
+    }
+
     template <typename Visit>
     void visitCell(const BlockValues& values, const Coord& cell, unsigned inside,
                    const Visit& visit) {
@@ -125,6 +152,7 @@ class BlockTriangles {
     }
 
     double mIso;
+    std::array<std::array<unsigned, kBlockNodes>, kBlockNodes> mInside{};
     std::array<Vec3d, kMostCorners + 1> mPlaces;
     std::vector<openvdb::Vec3I> mTriangles;
 };
@@ -162,6 +190,7 @@ class GridSurface final : public BoundarySource {
     double mIso;
     IndexMap mMap;  // to the source's world
     double mTurn;   // -1 where the map mirrors
+    Vec3d mMiddle;  // of the grid; about it volumes cancel little
     std::vector<Coord> mBlocks;
     BBoxd mBounds;
     double mVolume = 0, mArea = 0;
@@ -184,6 +213,7 @@ GridSurface::GridSurface(std::string name, const openvdb::FloatGrid::ConstPtr& g
     }
     const double volume = mMap.axes[0].cross(mMap.axes[1]).dot(mMap.axes[2]);
     mTurn = volume < 0 ? -1 : 1;
+    mMiddle = mMap.at(mGrid->evalActiveVoxelBoundingBox().getCenter());
     measure(progress);
     if (mBlocks.empty()) {
         float highest = mGrid->background();
@@ -232,8 +262,6 @@ void GridSurface::measure(Progress& progress) {
 void GridSurface::measureBlock(const Coord& origin, BlockTriangles& triangles,
                                const BlockValues& values, Part& part) const {
     const IndexMap map = mapOf(origin, 1);
-    // About the middle of all blocks volumes cancel little.
-    const Vec3d middle = mMap.at(mGrid->evalActiveVoxelBoundingBox().getCenter());
     triangles.forEachRing(
         values, [&](std::span<const Vec3d> places, const std::vector<openvdb::Vec3I>& numbers) {
             for (const openvdb::Vec3I& t : numbers) {
@@ -241,7 +269,7 @@ void GridSurface::measureBlock(const Coord& origin, BlockTriangles& triangles,
                 const Vec3d b = map.at(places[t[1]]);
                 const Vec3d c = map.at(places[t[2]]);
                 const Vec3d normal = mTurn * (b - a).cross(c - a);
-                part.volume.add((a - middle).dot(normal) / 6.0);
+                part.volume.add((a - mMiddle).dot(normal) / 6.0);
                 part.area.add(0.5 * normal.length());
                 part.bounds.expand(a);
                 part.bounds.expand(b);

@@ -9,7 +9,9 @@
 #include <bandvox/core/memory.h>
 #include <bandvox/core/parallel.h>
 #include <bandvox/core/version.h>
+#include <bandvox/grid/array_box.h>
 #include <bandvox/grid/density_grid.h>
+#include <bandvox/grid/join_shards.h>
 #include <bandvox/resample/resample_grid.h>
 
 #include <openvdb/tools/Prune.h>
@@ -46,6 +48,7 @@ void requireLinear(const openvdb::math::Transform& transform, ErrorKind kind) {
 }
 
 void requireValid(const ResampleOptions& options) {
+    requireValid(options.shard);
     if (options.filter) requireValid(*options.filter);
     if (!(options.tolerance >= 1e-6 && options.tolerance <= 0.05)) {
         throw Error(ErrorKind::Usage, "the tolerance of resampling is " +
@@ -72,6 +75,7 @@ struct Step {
     ValueRange range;  // of its values
     LatticeFilter filter;
     bool isDensity;
+    Shard shard = {};
 
     double amplitude() const {
         const double background = source.background();
@@ -113,6 +117,9 @@ openvdb::FloatGrid::Ptr runStep(const Step& step, const openvdb::math::Transform
         const ProgressStage stage(progress, "filtering", static_cast<std::int64_t>(blocks.size()));
         parallelFor(static_cast<std::int64_t>(blocks.size()), [&](std::int64_t i) {
             progress.throwIfInterrupted();
+            if (!step.shard.holds(i, static_cast<std::int64_t>(blocks.size()))) {
+                return progress.advance();
+            }
             const Coord& block = blocks[static_cast<std::size_t>(i)];
             GridPart& part = parts[static_cast<std::size_t>(i)];
             const int side = filter.blockSide();
@@ -184,6 +191,8 @@ std::optional<ExponentialFilter> filterOf(const std::optional<DensityMetadata>& 
 void describeResult(openvdb::FloatGrid& grid, const openvdb::FloatGrid& source,
                     const ResampleOptions& options, double largestStep) {
     static_cast<openvdb::MetaMap&>(grid) = static_cast<const openvdb::MetaMap&>(source);
+    setShardMetadata(grid, {options.shard, false, 0});
+    dropArrayBox(grid);
     std::optional<DensityMetadata> metadata = densityMetadata(source);
     const std::optional<ExponentialFilter> kept =
         options.filter ? options.filter : filterOf(metadata);
@@ -231,7 +240,8 @@ ResampleResult resampleGrid(const openvdb::FloatGrid::ConstPtr& source,
     const Step last{*grid,
                     finiteRange(*grid),
                     {options.filter, before, options.tolerance},
-                    metadata.has_value()};
+                    metadata.has_value(),
+                    options.shard};
     result.amplitude = last.amplitude();
     result.grid = runStep(last, target, result, progress);
     describeResult(*result.grid, *source, options,

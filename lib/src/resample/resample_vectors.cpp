@@ -1,5 +1,6 @@
 #include <bandvox/core/error.h>
 #include <bandvox/core/parallel.h>
+#include <bandvox/grid/array_box.h>
 #include <bandvox/resample/resample_vectors.h>
 
 #include <openvdb/tools/Prune.h>
@@ -84,6 +85,7 @@ openvdb::Vec3SGrid::Ptr resampleVectors(const openvdb::Vec3SGrid::ConstPtr& sour
     openvdb::tools::pruneInactive(tree);
     openvdb::tools::pruneTiles(tree, openvdb::Vec3s(0.0F));
     static_cast<openvdb::MetaMap&>(*result) = static_cast<const openvdb::MetaMap&>(*source);
+    dropArrayBox(*result);
     result->setTransform(target.copy());
     return result;
 }

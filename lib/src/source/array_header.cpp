@@ -12,6 +12,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <stdexcept>
 
 namespace bandvox {
 
@@ -53,6 +54,13 @@ const char* nameOf(ArrayType type) {
 
 std::size_t bytesOf(ArrayType type) {
     return entryOf(type).bytes;
+}
+
+ArrayType typeNamed(const std::string& name) {
+    for (const TypeEntry& entry : kTypes) {
+        if (entry.name == name) return entry.type;
+    }
+    throw std::logic_error("there is no type of numbers named " + name);
 }
 
 void failArray(const std::filesystem::path& path, const std::string& why) {

@@ -30,6 +30,8 @@ enum class ArrayType {
 /// "uint16", ...
 const char* nameOf(ArrayType type);
 std::size_t bytesOf(ArrayType type);
+/// The type of that name. Throws std::logic_error if there is none.
+ArrayType typeNamed(const std::string& name);
 
 /// What a header says: where the values are and how they are stored.
 struct ArrayHeader {

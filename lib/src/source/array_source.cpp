@@ -1,4 +1,8 @@
+#include "core/words.h"
 #include "source/array_header.h"
+#include "source/dicom_series.h"
+#include "source/image_stack.h"
+#include "source/stack_files.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/source/array_source.h>
@@ -9,6 +13,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -206,13 +211,39 @@ bool isArrayFile(const fs::path& path) {
            extension == ".mha" || extension == ".mhd";
 }
 
-std::unique_ptr<ArraySource> openArray(const fs::path& path) {
-    const std::string extension = lowerExtension(path);
-    if (!isArrayFile(path)) {
-        failArray(path, "its extension is \"" + extension +
-                            "\"; expected .npy, .nrrd, .nhdr, .mha or .mhd");
+bool isArrayInput(const fs::path& path) {
+    return isArrayFile(path) || isStack(path);
+}
+
+void ArraySource::place(const std::optional<openvdb::Vec3d>& spacing,
+                        const std::optional<openvdb::Vec3d>& origin) {
+    openvdb::Mat4d& matrix = mInfo.toWorld;
+    for (int axis = 0; spacing && axis < 3; ++axis) {
+        if (!((*spacing)[axis] > 0 && std::isfinite((*spacing)[axis]))) {
+            throw Error(ErrorKind::Usage, "the spacing of voxels is " + inShort((*spacing)[axis]) +
+                                              " along an axis; expected it above 0");
+        }
+        const openvdb::Vec3d step(matrix(axis, 0), matrix(axis, 1), matrix(axis, 2));
+        const double factor = (*spacing)[axis] / step.length();
+        for (int column = 0; column < 3; ++column) matrix(axis, column) *= factor;
     }
+    for (int column = 0; origin && column < 3; ++column) matrix(3, column) = (*origin)[column];
+    mInfo.hasTransform = mInfo.hasTransform || spacing.has_value();
+}
+
+std::unique_ptr<ArraySource> openArray(const fs::path& path, const ArrayReadOptions& options) {
+    const std::string extension = lowerExtension(path);
     std::error_code ignored;
+    if (!isArrayFile(path)) {
+        StackFiles files = findStack(path);
+        if (files.kind == StackFiles::Kind::Dicom)
+            return openDicomSeries(std::move(files), options);
+        return openImageStack(std::move(files), options);
+    }
+    if (!options.channel.empty() || !options.series.empty()) {
+        throw Error(ErrorKind::Usage, "a channel or a series was asked for, and '" + path.string() +
+                                          "' is neither an image nor of DICOM");
+    }
     if (fs::is_directory(path, ignored)) failArray(path, "it is a folder; expected a file");
     std::ifstream stream(path, std::ios::binary);
     if (!stream) failArray(path, "it cannot be opened for reading");

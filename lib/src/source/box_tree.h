@@ -3,14 +3,13 @@
 #include <openvdb/Types.h>
 #include <openvdb/math/BBox.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 namespace bandvox {
 
-/// A bounding volume hierarchy: finds the boxes of a list that a line parallel to x meets, that
-/// hold a point, or that are near one.
+/// A bounding volume hierarchy: finds the boxes of a list that a line parallel to x meets, or that
+/// hold a point.
 class BoxTree {
   public:
     explicit BoxTree(std::vector<openvdb::BBoxd> boxes);
@@ -30,23 +29,6 @@ class BoxTree {
     template <typename Visit>
     void visitAround(const openvdb::Vec3d& point, const Visit& visit) const {
         visitWhere([&point](const openvdb::BBoxd& box) { return box.isInside(point); }, visit);
-    }
-
-    /// Calls visit(i) for each box i that is nearer to the point than a distance, of which the
-    /// square is given, and which `visit` may lower meanwhile.
-    template <typename Visit>
-    void visitNearer(const openvdb::Vec3d& point, const double& squaredDistance,
-                     const Visit& visit) const {
-        const auto isNearer = [&](const openvdb::BBoxd& box) {
-            double square = 0;
-            for (int axis = 0; axis < 3; ++axis) {
-                const double outside =
-                    std::max({box.min()[axis] - point[axis], point[axis] - box.max()[axis], 0.0});
-                square += outside * outside;
-            }
-            return square < squaredDistance;
-        };
-        visitWhere(isNearer, visit);
     }
 
   private:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bandvox/core/shard.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/spectral/exponential_filter.h>
 
@@ -22,6 +23,7 @@ struct DensityOptions {
     bool clamp = false;        ///< limit the density to [0, 1] (cuts off ringing)
     bool sumOverlaps = false;  ///< exact route: let shells that overlap add up beyond 1
     double iso = 0.5;          ///< density that is the surface, in (0, 1); stored for later stages
+    Shard shard;               ///< part of the grid that is made (joinShards); it may be empty
 };
 
 /// A density grid and what was measured while it was made.
@@ -37,6 +39,8 @@ struct DensityResult {
     double minimum = 0, maximum = 0;    ///< of the density over all voxels, limited if it is
     double spreadSeconds = 0;           ///< processor time of all threads before the transforms
     double transformSeconds = 0;        ///< the same in transforms
+    bool overlaps = false;              ///< shells of the surface overlap, as far as is seen here
+    int refinements = 0;                ///< how often the quadrature was made finer
     std::vector<std::string> warnings;  ///< in words, for the user
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bandvox/core/progress.h>
+#include <bandvox/core/shard.h>
 #include <bandvox/source/colored_mesh.h>
 #include <bandvox/spectral/exponential_filter.h>
 
@@ -16,6 +17,7 @@ struct ColorOptions {
     ExponentialFilter filter;  ///< of the density; see colorFilter
     int tile = 0;              ///< side of the cube that one FFT filters, voxels, even, up to 512;
                                ///< 0 chooses
+    Shard shard;               ///< part of the grid that is made (joinShards); it may be empty
 };
 
 /// A grid of colours and what was counted while it was made.

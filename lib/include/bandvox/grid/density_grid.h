@@ -18,8 +18,8 @@ class AtomicFile;
 struct DensityMetadata {
     std::string version;          ///< of the library that made it
     std::string source;           ///< file or shape it was made from
-    std::string route = "exact";  ///< "exact", "sampled" or "winding"; "filtered" of a grid that
-                                  ///< another program made and this library filtered
+    std::string route = "exact";  ///< "exact", "sampled" or "winding"; "merged" of several;
+                                  ///< "filtered" by this library of another program's grid
     double order = 0;             ///< of the exponential filter
     double cutoff = 0;            ///< of the exponential filter, cycles per voxel
     double oversampling = 0;      ///< R/N of the sampled route, rows to a voxel's side of

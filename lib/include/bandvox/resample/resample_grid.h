@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bandvox/core/progress.h>
+#include <bandvox/core/shard.h>
 #include <bandvox/spectral/exponential_filter.h>
 
 #include <openvdb/openvdb.h>
@@ -17,6 +18,7 @@ struct ResampleOptions {
     std::optional<ExponentialFilter> filter = ExponentialFilter{};
     double tolerance = 1e-4;  ///< error allowed, relative to the largest difference from the
                               ///< background; 1e-6 to 0.05
+    Shard shard;              ///< part of the new grid that is made (joinShards)
 };
 
 /// A grid on another lattice, and what was done.
