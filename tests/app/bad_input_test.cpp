@@ -60,11 +60,11 @@ TEST_F(BadInput, Folder) {
 }
 
 TEST_F(BadInput, UnknownKind) {
-    writeText(mFolder / "cube.txt", cubeObj());
+    writeText(mFolder / "cube.abc", cubeObj());
     writeText(mFolder / "cube.vdb", "");
     writeText(mFolder / "cube.obj", cubeObj());
     writeText(mFolder / "cube", cubeObj());
-    expectFailure({"convert", "cube.txt", "-o", "out.vdb"}, 3, {"'.txt'", ".obj", "shape:"});
+    expectFailure({"convert", "cube.abc", "-o", "out.vdb"}, 3, {"'.abc'", ".obj", "shape:"});
     expectFailure({"convert", "cube", "-o", "out.vdb"}, 3, {"extension", ".obj"});
     expectFailure({"convert", "cube.vdb", "-o", "out.vdb"}, 3, {"cube.vdb", "empty"});
     expectFailure({"convert", "shape:blob", "-o", "out.vdb"}, 3, {"blob", "torus"});
