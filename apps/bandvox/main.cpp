@@ -4,6 +4,7 @@
 #include "command_line.h"
 #include "command_run.h"
 #include "commands.h"
+#include "frame_pattern.h"
 #include "interrupt.h"
 #include "words.h"
 
@@ -66,7 +67,7 @@ void runNamed(const Command& command, const CommandLine& line) {
         const std::string message = error.what();
         const std::vector<std::string>& inputs = line.positionals();
         const bool isNamed = error.kind() != ErrorKind::Input || inputs.size() != 1 ||
-                             message.starts_with("frame ") ||
+                             hasFrame(inputs.front()) ||
                              message.find(inputs.front()) != std::string::npos;
         if (isNamed) throw;
         throw Error(error.kind(), inputs.front() + ": " + message);

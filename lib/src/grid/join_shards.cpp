@@ -33,6 +33,10 @@ std::optional<Shard> parseShard(std::string_view text) {
     if (error != std::errc() || slash == end || *slash != '/') return std::nullopt;
     const auto [rest, second] = std::from_chars(slash + 1, end, shard.count);
     if (second != std::errc() || rest != end) return std::nullopt;
+    constexpr int kMostParts = 100'000;
+    if (shard.index < 1 || shard.index > shard.count || shard.count > kMostParts) {
+        return std::nullopt;
+    }
     return shard;
 }
 
@@ -102,6 +106,7 @@ void addPart(Grid& whole, Grid& part, std::set<openvdb::Coord>& shared) {
 void makeTiles(openvdb::FloatGrid& grid, const std::set<openvdb::Coord>& shared) {
     for (const openvdb::Coord& origin : shared) {
         const auto* leaf = grid.tree().probeConstLeaf(origin);
+        if (!leaf) failJoin("the parts share voxels; expected parts that do not");
         const float first = leaf->getFirstValue();
         if (first != std::nearbyint(first) || !isConstantLeaf(*leaf)) continue;
         grid.tree().addTile(1, origin, first, /*active=*/true);
