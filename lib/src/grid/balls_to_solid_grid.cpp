@@ -35,6 +35,9 @@ constexpr double kLargestSolidBall = 32;
 /// What a leaf takes while balls are drawn, with its share of the tree.
 constexpr double kBytesPerLeaf = 2600;
 
+/// What a lattice may take that is finer than large balls need. The same on every machine.
+constexpr double kFinerBytes = 2e9;
+
 /// Voxels of the lattice along a voxel of the density.
 constexpr std::array kBallFactors{2.0, 4.0, 8.0};
 
@@ -121,7 +124,7 @@ double leavesTouched(const Balls& balls, double voxel) {
     return double(touched.activeVoxelCount()) + shells;
 }
 
-/// The coarsest lattice that holds the smallest ball, or the finest that memory allows.
+/// The coarsest lattice that holds the smallest ball, or the finest that is not too large.
 double chooseBallLattice(const Balls& balls, double voxelSize) {
     double smallest = std::numeric_limits<double>::infinity();
     for (const double radius : balls.radii) {
@@ -130,8 +133,7 @@ double chooseBallLattice(const Balls& balls, double voxelSize) {
     double voxel = voxelSize / kBallFactors.front();
     for (const double factor : kBallFactors) {
         const double finer = voxelSize / factor;
-        const bool mayBeTaken =
-            kBytesPerLeaf * leavesTouched(balls, finer) < 0.5 * double(availableMemory());
+        const bool mayBeTaken = kBytesPerLeaf * leavesTouched(balls, finer) < kFinerBytes;
         if (!mayBeTaken && factor != kBallFactors.front()) break;
         voxel = finer;
         if (smallest >= kSmallestBall * voxel) break;
