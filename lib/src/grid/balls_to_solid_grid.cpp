@@ -9,11 +9,14 @@
 #include <openvdb/tools/ParticlesToLevelSet.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace bandvox {

@@ -101,7 +101,7 @@ class PointTable {
 
     void split(std::string_view line) {
         mCells.clear();
-        line = mSeparator == '\t' ? line.substr(0, line.find_last_not_of("\r") + 1)
+        line = mSeparator == '\t' ? line.substr(0, line.find_last_not_of('\r') + 1)
                                   : withoutBlanks(line);
         if (mSeparator == ' ') {
             while (!line.empty()) {

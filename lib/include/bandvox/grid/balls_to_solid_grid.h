@@ -27,8 +27,8 @@ struct BallGrid {
 
 /// The union of balls as distances from its surface, for makeGridSurface, on a lattice that suits
 /// a density of voxels of side `voxelSize` (world units, above 0): half of that side, or a fourth
-/// or an eighth where balls are that small and it takes less than 2 GB. Its voxel 0 lies in their midst.
-/// Balls whose radius is below 1.5 voxels of the lattice are left out, and counted.
+/// or an eighth where balls are that small and it takes less than 2 GB. Its voxel 0 lies in their
+/// midst. Balls whose radius is below 1.5 voxels of the lattice are left out, and counted.
 ///
 /// The surface of marching cubes cuts corners; balls are enlarged by h²/(5 r), h the lattice's
 /// voxel, so that each encloses its volume (docs/points.md). By OpenVDB's ParticlesToLevelSet and,
