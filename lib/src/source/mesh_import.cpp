@@ -1,6 +1,7 @@
 #include "source/mesh_import.h"
 
 #include "core/words.h"
+#include "source/checked_files.h"
 #include "source/file_integrity.h"
 
 #include <bandvox/core/error.h>
@@ -172,7 +173,9 @@ MeshImport::MeshImport(const fs::path& path, Progress& progress) : mPath(path) {
     mWarnings = std::move(facts.warnings);
     progress.throwIfInterrupted();
 
-    mImporter.SetProgressHandler(new ImportProgress(progress));  // it takes ownership
+    // It takes ownership of both.
+    mImporter.SetProgressHandler(new ImportProgress(progress));
+    mImporter.SetIOHandler(new CheckedFiles(path));
     mImporter.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                                  aiPrimitiveType_POINT | aiPrimitiveType_LINE);
 
