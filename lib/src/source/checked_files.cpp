@@ -1,7 +1,5 @@
 #include "source/checked_files.h"
 
-#include "source/mesh_import.h"
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -11,9 +9,6 @@
 namespace bandvox {
 
 namespace fs = std::filesystem;
-
-CheckedFiles::CheckedFiles(const fs::path& mesh)
-    : mMesh(mesh.string()), mIsObj(lowerExtension(mesh) == ".obj") {}
 
 Assimp::IOStream* CheckedFiles::Open(const char* path, const char* mode) {
     std::error_code ignored;

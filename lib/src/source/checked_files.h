@@ -13,8 +13,9 @@ namespace bandvox {
 /// regular files, and those of which damage would crash the importer are checked.
 class CheckedFiles final : public Assimp::DefaultIOSystem {
   public:
-    /// Whether the file at `mesh` is an .obj decides what the others hold.
-    explicit CheckedFiles(const std::filesystem::path& mesh);
+    /// What the file at `mesh` refers to are materials if it is an .obj.
+    CheckedFiles(const std::filesystem::path& mesh, bool isObj)
+        : mMesh(mesh.string()), mIsObj(isObj) {}
 
     /// Throws Error(ErrorKind::Input), which the importer takes for its own: it then fails with
     /// that text.

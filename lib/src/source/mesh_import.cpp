@@ -175,7 +175,7 @@ MeshImport::MeshImport(const fs::path& path, Progress& progress) : mPath(path) {
 
     // It takes ownership of both.
     mImporter.SetProgressHandler(new ImportProgress(progress));
-    mImporter.SetIOHandler(new CheckedFiles(path));
+    mImporter.SetIOHandler(new CheckedFiles(path, lowerExtension(path) == ".obj"));
     mImporter.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                                  aiPrimitiveType_POINT | aiPrimitiveType_LINE);
 
