@@ -34,13 +34,13 @@ TEST(SoundTransform, HonestOnesHaveNoFault) {
     auto frustum =
         Transform::createFrustumTransform(openvdb::BBoxd(Vec3d(0), Vec3d(100)), 0.5, 10, 0.1);
     EXPECT_EQ(transformFault(*frustum), "");
-    for (const double side : {1e-29, 1e29}) {
+    for (const double side : {1e-4, 1e29}) {
         EXPECT_EQ(transformFault(*Transform::createLinearTransform(side)), "") << side;
     }
 }
 
 TEST(SoundTransform, SidesThatNoWorldHasAreAFault) {
-    for (const double side : {1e-31, 1e31, 1e300}) {
+    for (const double side : {1e31, 1e300}) {
         EXPECT_NE(transformFault(Transform(std::make_shared<openvdb::math::ScaleMap>(Vec3d(side)))),
                   "")
             << side;
@@ -64,8 +64,8 @@ TEST(SoundTransform, ReadingRefusesWhatAFileSaysWrong) {
     ASSERT_LT(map, bytes.size());
     constexpr int kRows = 3;
     for (int row = 0; row < kRows; ++row) {
-        for (const double number :
-             {0.0, 1e308, -1e40, 7.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+        for (const double number : {0.0, 1e-6, 1e-31, 1e308, -1e40, 7.0, std::nan(""),
+                                    std::numeric_limits<double>::infinity()}) {
             std::string bad = bytes;
             std::memcpy(bad.data() + map + 24 * row + 8, &number, sizeof number);
             std::istringstream in(bad);

@@ -5,6 +5,7 @@
 #include <openvdb/io/Compression.h>
 #include <openvdb/io/io.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -117,24 +118,25 @@ bool ReadGuard::isSound(std::span<const char> bytes) {
 }
 
 bool ReadGuard::isSoundOutsideOfTrees(std::span<const char> bytes) {
-    // Behind the name of its type a table has its length, its number of entries, and then twice
-    // the length of a part and that part, if there is one. There all ones say that the part is not
-    // compressed.
-    constexpr int kFirstPart = 3, kLastPart = 5;
+    // Behind the name of its type a table has its length, its number of entries, the length of its
+    // first part, that part, and the length of the second, where all ones say that there is none.
+    constexpr int kSecondPart = 5;
     if (mTableReads >= 0) ++mTableReads;
     if (std::string_view(bytes.data(), bytes.size()) == kTableType) mTableReads = 0;
-    const bool mayBeOnes = mTableReads >= kFirstPart && mTableReads <= kLastPart;
-    if (mTableReads == kLastPart) mTableReads = -1;
+    const bool mayBeOnes = mTableReads == kSecondPart;
+    if (mayBeOnes) mTableReads = -1;
 
     // 4 bytes are the length of what follows, or a number of things that take a byte at least,
     // except after 4 (the length of metadata, which they are then) and after 1 (the number of
     // buffers, and they are the background). Right behind the kind of compression these are the
-    // number of metadata, and the length of a name follows.
+    // number of metadata, and the length of a name follows; or a name of 4 bytes stands there
+    // behind a number, which has no bytes of 0 or 255.
     constexpr std::uint32_t kKinds = 256;
     if (bytes.size() != 4) return true;
     const auto number = numberIn<std::uint32_t>(bytes);
-    if (mTableReads == kFirstPart && number == 0) ++mTableReads;  // there is no such part
-    const bool isCount = mBeforeLast.size == 4 && mBeforeLast.number < kKinds;
+    const bool isName =
+        std::none_of(bytes.begin(), bytes.end(), [](char c) { return c == '\0' || c == '\xff'; });
+    const bool isCount = mBeforeLast.size == 4 && mBeforeLast.number < kKinds && !isName;
     const bool isValue = mLast.size == 4 && (mLast.number == 4 || mLast.number == 1) && !isCount;
     const bool isOnes = number == std::numeric_limits<std::uint32_t>::max();
     return isValue || (isOnes && mayBeOnes) || number <= left();

@@ -90,7 +90,7 @@ class ReadGuard {
         std::uint64_t number = 0;  ///< what was read, if it can be a number
     };
     Read mLast, mBeforeLast;
-    int mTableReads = -1;  ///< since the name of a type of table was read; -1 if it was not
+    int mTableReads = -1;  ///< since the name of a type of table was read; -1: none was
 
     // Of the grid.
     bool mHalf = false;              ///< reals are stored in half precision
