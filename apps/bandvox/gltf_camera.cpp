@@ -35,6 +35,8 @@ constexpr int kDeepest = 256;
 
 // The description in JSON: the first chunk of a binary file, or all of a text.
 std::string jsonOf(const std::string& file) {
+    std::error_code ignored;
+    if (fs::is_directory(file, ignored)) fail(file, "is a folder; expected a file");
     std::ifstream stream(file, std::ios::binary);
     if (!stream) fail(file, "cannot be opened for reading");
     std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};

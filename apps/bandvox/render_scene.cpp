@@ -164,6 +164,11 @@ void readSceneFile(const CommandLine& line, const std::string& path,
         for (const OptionValues& values :
              file.list("lights", {"direction", "position", "space", "color", "size"})) {
             request.lights.push_back(readLight(values));
+            try {
+                requireValid(request.lights.back());
+            } catch (const Error& error) {
+                throw Error(ErrorKind::Input, values.title() + error.what());
+            }
         }
     }
     if (file.has("environment")) {

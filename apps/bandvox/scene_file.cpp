@@ -63,6 +63,8 @@ class RepeatedNames {
 
 SceneFile::SceneFile(const std::string& path)
     : mPath(path), mJson(std::make_unique<nlohmann::json>()) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) fail("it is a folder; expected a file");
     std::ifstream stream(path);
     if (!stream) fail("it cannot be opened for reading");
     RepeatedNames names;

@@ -99,10 +99,11 @@ RunResult runProgram(const std::vector<std::string>& arguments, const RunOptions
 
     RunResult result;
     int status = 0;
+    rusage usage{};
     if (options.signalWhen) {
         int signal = 0;
         int sent = 0;
-        while (waitpid(child, &status, WNOHANG) == 0) {
+        while (wait4(child, &status, WNOHANG, &usage) == 0) {
             if (signal == 0) signal = options.signalWhen(readText(err));
             if (signal != 0 && sent < options.signalTimes) {
                 kill(child, signal);
@@ -112,9 +113,11 @@ RunResult runProgram(const std::vector<std::string>& arguments, const RunOptions
             std::this_thread::sleep_for(kPollInterval);
         }
     } else {
-        waitpid(child, &status, 0);
+        wait4(child, &status, 0, &usage);
     }
     result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    constexpr std::int64_t kBytesPerUnit = 1024;
+    result.peakBytes = usage.ru_maxrss * kBytesPerUnit;
     result.out = readText(out);
     result.err = readText(err);
     return result;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <csignal>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -47,6 +48,7 @@ struct RunResult {
     std::string out;  ///< standard output
     std::string err;  ///< standard error
     bool signalSent = false;
+    std::int64_t peakBytes = 0;  ///< memory that it had at most
 };
 
 /// Runs a program (searched in PATH unless it has a slash) with arguments.

@@ -253,12 +253,52 @@ TEST(GuardedReads, RefuseTextThatIsLongerThanTheFile) {
     EXPECT_FALSE(isSound(9, 93));
     EXPECT_TRUE(isSound(4, 93)) << "a value of 4 bytes";
 
+    EXPECT_FALSE(isSound(9, 0xffffffff)) << "all ones";
+
     const auto grid = openvdb::FloatGrid::create(0.0F);
     grid->insertMeta("note", openvdb::StringMetadata("nothing"));
     std::string bytes = bytesOf({grid}, 0);
     const std::int32_t length = 0x7fffffff;
     std::memcpy(bytes.data() + bytes.find("nothing") - 4, &length, sizeof length);
     EXPECT_NE(messageOf(bytes).find("damaged"), std::string::npos);
+}
+
+TEST(GuardedReads, TellACountFromTheLengthOfAValue) {
+    std::istream stream(nullptr);
+    const auto isSound = [&stream](const std::vector<std::uint32_t>& numbers) {
+        ReadGuard guard(100);
+        guard.watch(stream);
+        bool sound = true;
+        for (const std::uint32_t number : numbers) {
+            sound = guard.follow({reinterpret_cast<const char*>(&number), sizeof number});
+        }
+        return sound;
+    };
+    EXPECT_FALSE(isSound({6, 4, 0x7fffffff})) << "four metadata behind the kind of compression";
+    EXPECT_FALSE(isSound({2, 1, 0x7fffffff})) << "one";
+    EXPECT_TRUE(isSound({6, 4, 0x65746f6e})) << "a name of four letters behind a number";
+    EXPECT_TRUE(isSound({0x6f6f6f66, 4, 0x7fffffff})) << "a value behind a type of four letters";
+}
+
+TEST(GuardedReads, TablesMayHaveNoSecondPart) {
+    // As OpenVDB writes them: type, length, entries, the length of a part that is not compressed,
+    // that part, and all ones.
+    std::istream stream(nullptr);
+    ReadGuard guard(1000);
+    guard.watch(stream);
+    const auto follow = [&guard](const std::string& bytes) {
+        return guard.follow({bytes.data(), bytes.size()});
+    };
+    const auto number = [](std::uint32_t n) {
+        return std::string(reinterpret_cast<const char*>(&n), sizeof n);
+    };
+    EXPECT_TRUE(follow("__delayedload"));
+    EXPECT_TRUE(follow(number(40)));
+    EXPECT_TRUE(follow(number(7)));
+    EXPECT_TRUE(follow(number(0)));
+    EXPECT_TRUE(follow("1234567"));
+    EXPECT_TRUE(follow(number(0xffffffff)));
+    EXPECT_FALSE(follow(number(0xffffffff))) << "the length of the next name";
 }
 
 /// Metadata that finds no memory when it is read.

@@ -5,11 +5,13 @@
 #include <openvdb/io/Compression.h>
 #include <openvdb/io/io.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
 #include <limits>
 #include <string>
+#include <string_view>
 
 // The order of the reads that is followed here is that of readTopology and readBuffers of
 // OpenVDB's nodes, and of readCompressedValues in openvdb/io/Compression.h.
@@ -17,6 +19,7 @@
 namespace bandvox {
 namespace {
 
+constexpr std::string_view kTableType = "__delayedload";
 constexpr std::size_t kLengthBytes = 8;
 constexpr std::size_t kLeafMaskBytes = 64;         // 8³ voxels
 constexpr std::size_t kLowerMaskBytes = 512;       // 16³ children
@@ -84,7 +87,7 @@ ReadGuard ReadGuard::forLeaves(std::ios_base& stream, std::streamoff size) const
     guard.mStream = &stream;
     guard.mSize = size;
     guard.mPlace = 0;
-    guard.mLast = {};
+    guard.mLast = guard.mBeforeLast = {};
     guard.mStage = Stage::Between;
     return guard;
 }
@@ -97,6 +100,7 @@ bool ReadGuard::follow(std::span<const char> bytes) {
     if (bytes.empty()) return true;
     mPlace += static_cast<std::streamoff>(bytes.size());
     const bool sound = isSound(bytes);
+    mBeforeLast = mLast;
     mLast = {bytes.data(), bytes.size(), 0};
     if (bytes.size() == 4) mLast.number = numberIn<std::uint32_t>(bytes);
     if (bytes.size() == 8) mLast.number = numberIn<std::uint64_t>(bytes);
@@ -110,13 +114,32 @@ bool ReadGuard::isSound(std::span<const char> bytes) {
         if (background != mTree) enterTree(background);
         return isSoundInTree(bytes);
     }
-    // Outside of trees 4 bytes are the length of what follows, or a number of things that take a
-    // byte at least, except after 4 (the length of metadata, which they are then) and after 1 (the
-    // number of buffers, and they are the background). All ones say that a table is not compressed.
+    return isSoundOutsideOfTrees(bytes);
+}
+
+bool ReadGuard::isSoundOutsideOfTrees(std::span<const char> bytes) {
+    // Behind the name of its type a table has its length, its number of entries, the length of its
+    // first part, that part, and the length of the second, where all ones say that there is none.
+    constexpr int kSecondPart = 5;
+    if (mTableReads >= 0) ++mTableReads;
+    if (std::string_view(bytes.data(), bytes.size()) == kTableType) mTableReads = 0;
+    const bool mayBeOnes = mTableReads == kSecondPart;
+    if (mayBeOnes) mTableReads = -1;
+
+    // 4 bytes are the length of what follows, or a number of things that take a byte at least,
+    // except after 4 (the length of metadata, which they are then) and after 1 (the number of
+    // buffers, and they are the background). Right behind the kind of compression these are the
+    // number of metadata, and the length of a name follows; or a name of 4 bytes stands there
+    // behind a number, which has no bytes of 0 or 255.
+    constexpr std::uint32_t kKinds = 256;
     if (bytes.size() != 4) return true;
-    const bool isValue = mLast.size == 4 && (mLast.number == 4 || mLast.number == 1);
     const auto number = numberIn<std::uint32_t>(bytes);
-    return isValue || number == std::numeric_limits<std::uint32_t>::max() || number <= left();
+    const bool isName =
+        std::none_of(bytes.begin(), bytes.end(), [](char c) { return c == '\0' || c == '\xff'; });
+    const bool isCount = mBeforeLast.size == 4 && mBeforeLast.number < kKinds && !isName;
+    const bool isValue = mLast.size == 4 && (mLast.number == 4 || mLast.number == 1) && !isCount;
+    const bool isOnes = number == std::numeric_limits<std::uint32_t>::max();
+    return isValue || (isOnes && mayBeOnes) || number <= left();
 }
 
 void ReadGuard::enterTree(const void* background) {

@@ -69,6 +69,7 @@ class ReadGuard {
 
     std::streamoff left() const { return mSize - mPlace; }
     bool isSound(std::span<const char> bytes);
+    bool isSoundOutsideOfTrees(std::span<const char> bytes);
     bool isSoundInTree(std::span<const char> bytes);
     void enterTree(const void* background);
     bool isMask(std::size_t size) const;
@@ -88,7 +89,8 @@ class ReadGuard {
         std::size_t size = 0;
         std::uint64_t number = 0;  ///< what was read, if it can be a number
     };
-    Read mLast;
+    Read mLast, mBeforeLast;
+    int mTableReads = -1;  ///< since the name of a type of table was read; -1: none was
 
     // Of the grid.
     bool mHalf = false;              ///< reals are stored in half precision

@@ -1,5 +1,6 @@
 #include "grid/guarded_reads.h"
 #include "grid/leaf_reading.h"
+#include "grid/sound_transform.h"
 
 #include <bandvox/core/atomic_file.h>
 #include <bandvox/core/error.h>
@@ -88,12 +89,13 @@ openvdb::GridPtrVec readGrids(const ByteSource& source, const std::string& name)
     constexpr const char* kDamaged = "it is not a whole VDB file: it ends too early, or is damaged";
     initializeOpenVdb();
     GuardedBuffer buffer(source);
+    openvdb::GridPtrVec grids;
     try {
         // A stream that throws stops the reader at the end of a file that was cut short; its own
         // would go on with whatever is in memory.
         std::istream stream(&buffer);
         stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
-        return VdbArchive().read(stream, buffer);
+        grids = VdbArchive().read(stream, buffer);
     } catch (const std::ios::failure&) {
         failInput(name, kDamaged);
     } catch (const std::bad_array_new_length&) {
@@ -108,6 +110,11 @@ openvdb::GridPtrVec readGrids(const ByteSource& source, const std::string& name)
         failInput(name, "it is not a readable VDB file (" +
                             std::string(error.what()).substr(0, kLongest) + ")");
     }
+    for (const openvdb::GridBase::Ptr& grid : grids) {
+        const std::string fault = transformFault(grid->transform());
+        if (!fault.empty()) failInput(name, "grid '" + grid->getName() + "' " + fault);
+    }
+    return grids;
 }
 
 // All that a stream holds.

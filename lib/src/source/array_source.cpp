@@ -203,6 +203,27 @@ class FileArray final : public ArraySource {
     std::vector<char> mStored;
 };
 
+// What no array can lie by. Voxels that are far longer than wide would take as many more to
+// be made cubes.
+void checkSides(const fs::path& path, const openvdb::Mat4d& toWorld) {
+    constexpr double kSmallest = 1e-30, kLargest = 1e30, kMostElongated = 1e4;
+    double shortest = kLargest, longest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const openvdb::Vec3d along(toWorld(axis, 0), toWorld(axis, 1), toWorld(axis, 2));
+        shortest = std::min(shortest, along.length());
+        longest = std::max(longest, along.length());
+    }
+    if (toWorld.getMat3().det() == 0) {
+        failArray(path, "its axes are not three different directions");
+    }
+    if (!(shortest >= kSmallest && longest < kLargest && longest <= kMostElongated * shortest)) {
+        failArray(path, "its voxels have sides from " + inShort(shortest) + " to " +
+                            inShort(longest) +
+                            " world units; expected 1e-30 to 1e30, and none 10000 times as long "
+                            "as another");
+    }
+}
+
 }  // namespace
 
 bool isArrayFile(const fs::path& path) {
@@ -253,9 +274,7 @@ std::unique_ptr<ArraySource> openArray(const fs::path& path, const ArrayReadOpti
                              : readMetaImageHeader(path, stream);
     header.info.name = path.string();
     header.info.valueType = nameOf(header.type);
-    if (header.info.toWorld.getMat3().det() == 0) {
-        failArray(path, "its axes are not three different directions");
-    }
+    checkSides(path, header.info.toWorld);
     return std::make_unique<FileArray>(std::move(header));
 }
 

@@ -1,5 +1,6 @@
 #include "source/file_integrity.h"
 #include "source/nesting_depth.h"
+#include "source/xml_tags.h"
 
 // Keeps Boost from remarking on its own use of its placeholders.
 #define BOOST_BIND_GLOBAL_PLACEHOLDERS
@@ -7,11 +8,15 @@
 #include <boost/property_tree/xml_parser.hpp>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -81,10 +86,96 @@ class NodeGraph {
     std::size_t mDepth = 0;
 };
 
+/// Checks lists of whole numbers, of which the importer reads on and on where something else is,
+/// and the numbers that say where the values of an array are, which it trusts.
+class NumberCheck {
+  public:
+    explicit NumberCheck(const FileContents& file) : mFile(file) {}
+
+    void check() {
+        forEachXmlTag(mFile.bytes, [this](const XmlTag& tag) { visit(tag); });
+        for (const Accessor& accessor : mAccessors) {
+            const auto found = mArrays.find(accessor.array);
+            if (found != mArrays.end() && found->second < accessor.end) {
+                mFile.fail("has an accessor of values up to " + std::to_string(accessor.end) +
+                           " of the array \"" + std::string(accessor.array.substr(0, 40)) +
+                           "\"; expected at most the " + std::to_string(found->second) +
+                           " that it has");
+            }
+        }
+    }
+
+  private:
+    struct Accessor {
+        std::string_view array;
+        std::uint64_t end;
+    };
+
+    void visit(const XmlTag& tag) {
+        if (tag.kind == XmlTag::Kind::Close) return;
+        constexpr std::array<std::string_view, 13> kCounted = {
+            "float_array", "Name_array", "IDREF_array",   "accessor", "input",
+            "triangles",   "polylist",   "polygons",      "trifans",  "tristrips",
+            "lines",       "linestrips", "vertex_weights"};
+        const bool isCounted =
+            std::find(kCounted.begin(), kCounted.end(), tag.name) != kCounted.end();
+        const std::uint64_t count = isCounted ? numberOf(tag, "count", 0) : 0;
+        if (tag.name == "float_array") mArrays[tag.attribute("id").value_or("")] = count;
+        if (tag.name == "accessor") {
+            const std::string_view source = tag.attribute("source").value_or("");
+            // No product is too large, as none of them is larger than a file.
+            const std::uint64_t stride = numberOf(tag, "stride", 1);
+            const std::uint64_t end = numberOf(tag, "offset", 0) + count * stride;
+            mAccessors.push_back({source.substr(source.starts_with('#') ? 1 : 0), end});
+        } else if (isCounted) {
+            numberOf(tag, "offset", 0);
+        }
+        const bool isList = tag.name == "p" || tag.name == "v" || tag.name == "vcount";
+        if (isList && tag.kind == XmlTag::Kind::Open) checkList(tag);
+    }
+
+    /// An attribute as a whole number, which is no more than the bytes of the file: honest ones
+    /// count what is in it.
+    std::uint64_t numberOf(const XmlTag& tag, std::string_view name, std::uint64_t standard) const {
+        const auto text = tag.attribute(name);
+        if (!text) return standard;
+        std::uint64_t number = 0;
+        const auto [end, error] =
+            std::from_chars(text->data(), text->data() + text->size(), number);
+        const bool isWhole = error == std::errc() && end == text->data() + text->size();
+        if (isWhole && number <= mFile.bytes.size()) return number;
+        std::string what = "has an element \"";
+        what += tag.name.substr(0, 40);
+        what += "\" whose ";
+        what += name;
+        what += " is \"";
+        what += text->substr(0, 40);
+        what += "\"; expected a whole number, at most that of the file's bytes";
+        mFile.fail(what);
+    }
+
+    void checkList(const XmlTag& tag) const {
+        const std::string_view bytes = mFile.bytes;
+        const std::size_t end = bytes.find_first_not_of("0123456789+- \t\r\n", tag.end);
+        if (end == std::string_view::npos || bytes.substr(end).starts_with("</")) return;
+        std::string what = "has \"";
+        what += bytes.substr(end, std::min<std::size_t>(bytes.find('<', end) - end, 20));
+        what += "\" in a list \"";
+        what += tag.name;
+        what += "\"; expected whole numbers";
+        mFile.fail(what);
+    }
+
+    const FileContents& mFile;
+    std::map<std::string_view, std::uint64_t> mArrays;  // how many values each has
+    std::vector<Accessor> mAccessors;
+};
+
 }  // namespace
 
 void checkCollada(const FileContents& file) {
     requireShallow(file, xmlDepth(file.bytes));
+    NumberCheck(file).check();
     // Only references can make a scene larger than its file, and the importer follows them blindly.
     if (file.bytes.find("instance_node") == std::string::npos) return;
     ptree tree;

@@ -1,6 +1,8 @@
 #include "source/mesh_import.h"
 
+#include "core/rehearsal.h"
 #include "core/words.h"
+#include "source/checked_files.h"
 #include "source/file_integrity.h"
 
 #include <bandvox/core/error.h>
@@ -12,6 +14,7 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -81,6 +84,11 @@ void checkScene(const aiScene& scene, const fs::path& path, std::vector<std::str
         }
         for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
             const aiFace& face = mesh.mFaces[f];
+            // The importer takes it for a polygon, and stops the process when it finds none.
+            if (face.mNumIndices == 0) {
+                fail(path, "has a face without corners, in " + nameOf(scene, m) +
+                               "; expected at least one corner");
+            }
             ++(face.mNumIndices < 3 ? flat : faces);
             for (unsigned i = 0; i < face.mNumIndices; ++i) {
                 if (face.mIndices[i] < mesh.mNumVertices) continue;
@@ -131,6 +139,21 @@ void checkPrecision(const Mesh& mesh, double reach, const fs::path& path,
     warnings.push_back("it " + found);
 }
 
+/// Of files that refer to themselves in ways that no check here follows all of, what reading one
+/// may take; nothing of others, whose checks leave the importer no way to go wrong.
+std::optional<RehearsalLimits> rehearsalLimits(const fs::path& path) {
+    constexpr std::int64_t kSeconds = 8, kBytesPerSecond = 1'000'000;
+    constexpr std::int64_t kBytes = 600'000'000, kBytesPerByte = 200;
+    const std::string extension = lowerExtension(path);
+    const bool hasBuffers = extension == ".gltf" || extension == ".glb";
+    if (!hasBuffers && extension != ".fbx" && extension != ".dae") return std::nullopt;
+    std::error_code ignored;
+    const auto size = static_cast<std::int64_t>(fs::file_size(path, ignored));
+    // What a glTF file says little of may be large, and beside it.
+    if (hasBuffers) return RehearsalLimits{kSeconds + size / kBytesPerSecond, 0};
+    return RehearsalLimits{kSeconds + size / kBytesPerSecond, kBytes + size * kBytesPerByte};
+}
+
 /// Appends a mesh under its transform. Returns how far its points reach from the origin of its own
 /// coordinates, along an axis, in world units.
 double appendMesh(const MeshInstance& instance, const fs::path& path, Mesh& mesh) {
@@ -165,6 +188,26 @@ std::string lowerExtension(const fs::path& path) {
     return extension;
 }
 
+void MeshImport::read(Progress& progress, std::size_t triangles) {
+    // It takes ownership of both.
+    mImporter.SetProgressHandler(new ImportProgress(progress));
+    mImporter.SetIOHandler(new CheckedFiles(mPath, lowerExtension(mPath) == ".obj"));
+    mImporter.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                                 aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+
+    // Read without any step that follows indices, check them, then split polygons.
+    const aiScene* scene = mImporter.ReadFile(mPath.string(), 0);
+    progress.throwIfInterrupted();
+    if (scene == nullptr) fail(mPath, std::string("is malformed: ") + mImporter.GetErrorString());
+    checkScene(*scene, mPath, mWarnings);
+    checkComplete(*scene, triangles, mPath);
+    scene = mImporter.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
+    progress.throwIfInterrupted();
+    if (scene == nullptr || scene->mRootNode == nullptr) {
+        fail(mPath, std::string("cannot be split into triangles: ") + mImporter.GetErrorString());
+    }
+}
+
 MeshImport::MeshImport(const fs::path& path, Progress& progress) : mPath(path) {
     checkFile(path);
     const ProgressStage stage(progress, "read mesh", kSteps);
@@ -172,21 +215,18 @@ MeshImport::MeshImport(const fs::path& path, Progress& progress) : mPath(path) {
     mWarnings = std::move(facts.warnings);
     progress.throwIfInterrupted();
 
-    mImporter.SetProgressHandler(new ImportProgress(progress));  // it takes ownership
-    mImporter.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
-                                 aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-
-    // Read without any step that follows indices, check them, then split polygons.
-    const aiScene* scene = mImporter.ReadFile(path.string(), 0);
-    progress.throwIfInterrupted();
-    if (scene == nullptr) fail(path, std::string("is malformed: ") + mImporter.GetErrorString());
-    checkScene(*scene, path, mWarnings);
-    checkComplete(*scene, facts.triangles, path);
-    scene = mImporter.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
-    progress.throwIfInterrupted();
-    if (scene == nullptr || scene->mRootNode == nullptr) {
-        fail(path, std::string("cannot be split into triangles: ") + mImporter.GetErrorString());
+    if (const auto limits = rehearsalLimits(path)) {
+        const std::string wrong = rehearse(
+            [&] {
+                Progress silent;
+                read(silent, facts.triangles);
+                return std::string();
+            },
+            *limits, progress);
+        if (wrong.starts_with('"')) throw Error(ErrorKind::Input, wrong);
+        if (!wrong.empty()) fail(path, "is malformed: its importer " + wrong);
     }
+    read(progress, facts.triangles);
 }
 
 std::vector<MeshInstance> MeshImport::instances() const {

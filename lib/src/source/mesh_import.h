@@ -54,6 +54,8 @@ class MeshImport {
     MeshFile file() const;
 
   private:
+    void read(Progress& progress, std::size_t triangles);
+
     std::filesystem::path mPath;
     Assimp::Importer mImporter;
     std::vector<std::string> mWarnings;

@@ -1,6 +1,7 @@
 #include "source/nesting_depth.h"
 
 #include "source/little_endian.h"
+#include "source/xml_tags.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -27,22 +28,6 @@ class Depth {
 std::size_t behind(std::string_view text, std::string_view end, std::size_t from) {
     const std::size_t found = text.find(end, from);
     return found == std::string_view::npos ? text.size() : found + end.size();
-}
-
-/// The place of the '>' that ends the tag, which may also stand in a quoted value.
-std::size_t tagEnd(std::string_view text, std::size_t from) {
-    for (std::size_t i = from; i < text.size(); ++i) {
-        if (text[i] == '>') return i;
-        if (text[i] == '"' || text[i] == '\'') i = behind(text, text.substr(i, 1), i + 1) - 1;
-    }
-    return text.size();
-}
-
-/// The place behind a document type declaration, whose own declarations are in brackets.
-std::size_t behindDoctype(std::string_view text, std::size_t from) {
-    const std::size_t end = tagEnd(text, from);
-    const std::size_t bracket = text.find('[', from);
-    return bracket < end ? behind(text, "]", bracket) : end;
 }
 
 std::size_t fbxTextDepth(std::string_view text) {
@@ -135,25 +120,10 @@ std::size_t jsonDepth(std::string_view text) {
 
 std::size_t xmlDepth(std::string_view text) {
     Depth depth;
-    for (std::size_t i = 0; (i = text.find('<', i)) < text.size();) {
-        const std::string_view rest = text.substr(i);
-        if (rest.starts_with("<!--")) {
-            i = behind(text, "-->", i + 4);
-        } else if (rest.starts_with("<![CDATA[")) {
-            i = behind(text, "]]>", i);
-        } else if (rest.starts_with("<?")) {
-            i = behind(text, "?>", i);
-        } else if (rest.starts_with("<!")) {
-            i = behindDoctype(text, i);
-        } else if (rest.starts_with("</")) {
-            depth.close();
-            i = behind(text, ">", i);
-        } else {
-            const std::size_t end = tagEnd(text, i + 1);
-            if (end == text.size() || text[end - 1] != '/') depth.open();
-            i = end;
-        }
-    }
+    forEachXmlTag(text, [&depth](const XmlTag& tag) {
+        if (tag.kind == XmlTag::Kind::Open) depth.open();
+        if (tag.kind == XmlTag::Kind::Close) depth.close();
+    });
     return depth.deepest();
 }
 

@@ -79,6 +79,9 @@ void checkObj(const FileContents& file, std::vector<std::string>& warnings) {
             ++references[1].count;
         } else if (words[0] == "vn") {
             ++references[2].count;
+        } else if (words[0] == "mtllib") {
+            const bool isItself = words.size() > 1 && words.back() == file.path.filename().string();
+            if (isItself) lines.fail("takes the file itself for its materials; expected another");
         } else if (words[0] == "f") {
             if (words.size() < 4) {
                 lines.fail("has a face with " + std::to_string(words.size() - 1) +

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "source/file_integrity.h"
+
+#include <assimp/DefaultIOSystem.h>
+
+#include <filesystem>
+#include <string>
+
+namespace bandvox {
+
+/// The files that the importer opens: the mesh file, and those that it refers to. They have to be
+/// regular files, and those of which damage would crash the importer are checked.
+class CheckedFiles final : public Assimp::DefaultIOSystem {
+  public:
+    /// What the file at `mesh` refers to are materials if it is an .obj.
+    CheckedFiles(const std::filesystem::path& mesh, bool isObj)
+        : mMesh(mesh.string()), mIsObj(isObj) {}
+
+    /// Throws Error(ErrorKind::Input), which the importer takes for its own: it then fails with
+    /// that text.
+    Assimp::IOStream* Open(const char* path, const char* mode) override;
+
+  private:
+    std::string mMesh;
+    bool mIsObj;
+};
+
+/// Checks the materials of an .obj file: the importer puts a texture that stands before the first
+/// material into one that is not there. Throws Error(ErrorKind::Input).
+void checkMaterials(const FileContents& file);
+
+}  // namespace bandvox
