@@ -4,14 +4,12 @@
 #include "convert_grid_solid.h"
 
 #include "choose_grid.h"
-#include "convert_to_array.h"
-#include "convert_volume.h"
 #include "density_report.h"
-#include "iso_option.h"
 #include "mesh_output.h"
-#include "output_kind.h"
+#include "solid_output.h"
 #include "stack_input.h"
 #include "standard_streams.h"
+#include "vdb_input.h"
 #include "volume_options.h"
 #include "words.h"
 
@@ -19,7 +17,6 @@
 #include <bandvox/grid/array_to_solid_grid.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/mesh/grid_surface.h>
-#include <bandvox/resample/detail_levels.h>
 #include <bandvox/source/array_source.h>
 #include <bandvox/source/shapes.h>
 
@@ -37,8 +34,6 @@
 namespace bandvox::app {
 namespace {
 
-constexpr int kLargestGridTile = 512;
-
 /// Values from `low` to `high` are inside.
 struct Threshold {
     double low = 0;
@@ -47,9 +42,6 @@ struct Threshold {
 
 struct GridSolidRequest {
     std::string input;
-    std::filesystem::path output;
-    std::optional<MeshOutput> mesh;      ///< instead of a volume
-    std::unique_ptr<ArrayOutput> array;  ///< the same
     std::optional<std::string> grid;
     std::optional<Threshold> threshold;
     StackRequest stack;
@@ -57,10 +49,8 @@ struct GridSolidRequest {
     LatticeRequest lattice;
     DensityOptions density;   ///< without a voxel size
     bool isFiltered = false;  ///< a filter was asked for
-    IsoOption iso;
-    OutputKind kind;
-    int levels = 0;
-    VdbWriteOptions write;
+    bool makesAnew = false;   ///< what only has a meaning where a density is made of a solid was
+    SolidOutput output;
 
     bool isArray() const { return isStackInput(input); }
 };
@@ -98,10 +88,7 @@ std::optional<Threshold> readThreshold(const CommandLine& line, bool isArray) {
 GridSolidRequest parseGridSolid(const CommandLine& line) {
     GridSolidRequest request;
     request.input = line.positional(0);
-    const std::string output = line.requiredText("output");
-    request.array = ArrayOutput::read(line);
-    if (!request.array) request.mesh = readVdbOrMeshOutput(line);
-    request.output = outputPath(output);
+    request.output = readSolidOutput(line, "a solid");
     refuseOptions(line,
                   {"route", "oversample", "overlap", "color", "no-filter", "points", "radius"},
                   "for the solid of a volume");
@@ -122,23 +109,9 @@ GridSolidRequest parseGridSolid(const CommandLine& line) {
     request.lattice = readLattice(line);
     request.isFiltered = line.has("cutoff") || line.has("order");
     DensityOptions& density = request.density;
-    density.filter = readFilter(line, density.filter);
     density.tolerance = line.number("tolerance", {.low = 1e-6, .high = 0.05}, density.tolerance);
-    density.tile = line.wholeNumber("tile", 0, kLargestGridTile, density.tile);
-    if (density.tile % 2 != 0) line.fail("tile", "an even number");
-    density.clamp = line.has("clamp");
-    request.iso = readIso(line, {.low = 0, .high = 1, .lowOpen = true, .highOpen = true});
-    density.iso = request.iso.value.value_or(density.iso);
-    request.kind = readOutputKind(line).value_or(OutputKind());
-    request.levels = readDetailLevels(line);
-    density.shard = readShard(line);
-    if (!density.shard.isWhole() && request.kind.kind != OutputKind::Kind::Density) {
-        throw Error(ErrorKind::Usage,
-                    "--as level-set or fog needs the whole, and --shard asks for "
-                    "a part; convert what is merged");
-    }
-    request.write.half = line.has("half");
-    if (!request.array) request.write.compression = readCompression(line);
+    readDensityOptions(line, request.output, density);
+    request.makesAnew = line.has("tile") || line.has("clamp");
     return request;
 }
 
@@ -179,6 +152,7 @@ GridSolid readGridSolid(CommandRun& run, const GridSolidRequest& request) {
                                           "solid; expected a grid of floats, whole numbers or "
                                           "truths");
     }
+    warnOfPart(run, *solid.grid, request.input);
     if (request.threshold) solid.iso = request.threshold->low;
     solid.name = sourceOf(*solid.grid);
     if (solid.name.empty()) solid.name = std::filesystem::path(request.input).filename().string();
@@ -203,8 +177,7 @@ DensityResult densityOn(CommandRun& run, const GridSolid& solid,
         makeGridSurface(solid.name, solid.grid, {solid.iso, toLattice}, run.progress());
     DensityResult result = surfaceToDensity(*source, options, run.progress());
     result.grid->setTransform(target.copy());
-    const auto space = solid.grid->getMetadata<openvdb::StringMetadata>("bandvox_space");
-    if (space) result.grid->insertMeta("bandvox_space", *space);
+    setPlaceMetadata(*result.grid, placeMetadata(*solid.grid));
     return result;
 }
 
@@ -212,6 +185,10 @@ DensityResult densityOn(CommandRun& run, const GridSolid& solid,
 openvdb::FloatGrid::Ptr densityOfDensity(CommandRun& run, const GridSolidRequest& request,
                                          const openvdb::FloatGrid::Ptr& grid,
                                          const openvdb::math::Transform& target) {
+    if (request.makesAnew) {
+        throw Error(ErrorKind::Usage,
+                    "--clamp and --tile have no meaning where the input is a density already");
+    }
     if (request.lattice.isSame() && !request.isFiltered) {
         if (request.density.shard.isWhole()) return grid;
         throw Error(ErrorKind::Usage,
@@ -226,7 +203,7 @@ openvdb::FloatGrid::Ptr densityOfDensity(CommandRun& run, const GridSolidRequest
 
 SolidDensity makeDensity(CommandRun& run, const GridSolidRequest& request, const GridSolid& solid,
                          const openvdb::math::Transform::ConstPtr& onto) {
-    if (!request.threshold && densityMetadata(*solid.grid)) {
+    if (!request.threshold && isDensityOfSolid(*solid.grid)) {
         return {densityOfDensity(run, request, solid.grid,
                                  *targetFor(*solid.grid, request.lattice, onto)),
                 {}};
@@ -236,29 +213,22 @@ SolidDensity makeDensity(CommandRun& run, const GridSolidRequest& request, const
     return {result.grid, std::move(result)};
 }
 
-// What is said, stored and rounded of a density.
-void finishDensity(CommandRun& run, const GridSolidRequest& request, SolidDensity& density) {
-    const auto before = density.result ? density.result->metadata : *densityMetadata(*density.grid);
-    DensityMetadata metadata = before;
-    if (request.write.half) {
-        metadata.storageError = std::max(metadata.storageError, roundToHalf(*density.grid));
-        metadata.gridVolume = densityIntegral(*density.grid);
+void finishSolid(CommandRun& run, const GridSolidRequest& request, SolidDensity& density) {
+    if (!density.result) {
+        DensityMetadata metadata = *densityMetadata(*density.grid);
+        return finishDensity(run, request.output, density.grid, metadata);
     }
-    setDensityMetadata(*density.grid, metadata);
-    if (const auto iso = isoFor(run, request.iso, density.grid)) metadata.iso = *iso;
-    setDensityMetadata(*density.grid, metadata);
-    if (!density.result) return;
-    density.result->metadata = metadata;
-    sayDensity(run, *density.result,
-               formatNumber(metadata.closureError, 2) + " measured by closure, tolerance " +
-                   formatNumber(metadata.tolerance, 2));
-    run.warn(density.result->warnings, ErrorKind::Result);
+    DensityResult& result = *density.result;
+    finishDensity(run, request.output, density.grid, result.metadata);
+    sayDensity(run, result, exactErrorInWords(request.output, result.metadata));
+    run.warn(result.warnings, ErrorKind::Result);
 }
 
 // A level set or fog of the grid's own lattice needs no density between.
 bool isDirect(const GridSolidRequest& request, const GridSolid& solid) {
-    return request.kind.kind != OutputKind::Kind::Density && !request.isArray() &&
-           request.lattice.isSame() && !request.isFiltered && solid.grid->hasUniformVoxels();
+    return request.output.kind.kind != OutputKind::Kind::Density && !request.isArray() &&
+           !request.output.iso.isGiven() && request.lattice.isSame() && !request.isFiltered &&
+           solid.grid->hasUniformVoxels();
 }
 
 }  // namespace
@@ -285,34 +255,20 @@ void convertGridSolid(ConvertJob& job) {
     const GridSolidRequest request = parseGridSolid(job.line());
     if (!job.begin()) return;
     CommandRun& run = job.run();
-    std::optional<AtomicFile> output;
-    if (!request.array) output.emplace(request.output);
+    std::optional<AtomicFile> file = request.output.openFile();
     const auto onto = readOnto(request.lattice);
     GridSolid solid = readGridSolid(run, request);
     if (isDirect(request, solid)) {
-        const auto grid = makeOutput(run, request.kind, solid.grid, solid.iso);
-        if (request.array) return request.array->write(run, *grid);
-        return job.writeVolume(*output, {grid}, request.write);
+        const SolidOutput& output = request.output;
+        const auto grid = makeOutput(run, output.kind, solid.grid, solid.iso);
+        if (output.array) return output.array->write(run, *grid);
+        return job.writeVolume(*file, {grid}, output.write);
     }
 
     SolidDensity density = makeDensity(run, request, solid, onto);
     solid.grid.reset();
-    finishDensity(run, request, density);
-    if (request.mesh) return writeMeshOutput(job, *output, *request.mesh, density.grid, nullptr);
-    const auto made = makeOutput(run, request.kind, density.grid);
-    if (request.array) return request.array->write(run, *made);
-    openvdb::GridCPtrVec written{made};
-    if (request.levels > 0) {
-        ResampleOptions options;
-        options.filter = request.density.filter;
-        options.tolerance = request.density.tolerance;
-        for (const auto& level :
-             makeDetailLevels(density.grid, request.levels, options, run.progress())) {
-            if (request.write.half) roundToHalf(*level);
-            written.push_back(level);
-        }
-    }
-    job.writeVolume(*output, written, request.write);
+    finishSolid(run, request, density);
+    writeSolid(job, file, request.output, request.density, density.grid);
 }
 
 openvdb::FloatGrid::Ptr rebuildLevelSet(CommandRun& run, const openvdb::FloatGrid::Ptr& levelSet,

@@ -3,12 +3,8 @@
 
 #include "convert_points.h"
 
-#include "convert_to_array.h"
-#include "convert_volume.h"
 #include "density_report.h"
-#include "iso_option.h"
-#include "mesh_output.h"
-#include "output_kind.h"
+#include "solid_output.h"
 #include "stack_input.h"
 #include "standard_streams.h"
 #include "volume_options.h"
@@ -19,7 +15,6 @@
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/grid/oriented_points_to_solid_grid.h>
 #include <bandvox/mesh/grid_surface.h>
-#include <bandvox/resample/detail_levels.h>
 #include <bandvox/source/point_cloud.h>
 #include <bandvox/source/shapes.h>
 
@@ -27,39 +22,27 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 
 namespace bandvox::app {
 namespace {
 
-constexpr int kLargestPointTile = 512;
-
 /// What points are taken for, in the order in which --points names it.
 enum class PointKind { Auto, Balls, Surface };
 
 struct PointRequest {
     std::string input;
-    std::filesystem::path output;
-    std::optional<MeshOutput> mesh;      ///< instead of a volume
-    std::unique_ptr<ArrayOutput> array;  ///< the same
     PointKind kind = PointKind::Auto;
     std::optional<double> radius;  ///< of all points
     DensityOptions density;
-    IsoOption iso;
-    OutputKind as;
-    int levels = 0;
-    VdbWriteOptions write;
+    SolidOutput output;
 };
 
 PointRequest parsePoints(const CommandLine& line) {
     PointRequest request;
     request.input = line.positional(0);
-    const std::string output = line.requiredText("output");
-    request.array = ArrayOutput::read(line);
-    if (!request.array) request.mesh = readVdbOrMeshOutput(line);
-    request.output = outputPath(output);
+    request.output = readSolidOutput(line, "points");
     refuseOptions(line,
                   {"grid", "background", "factor", "onto", "no-filter", "threshold", "route",
                    "oversample", "overlap", "color"},
@@ -73,27 +56,8 @@ PointRequest parsePoints(const CommandLine& line) {
     }
     DensityOptions& density = request.density;
     readSize(line, density.resolution, density.voxelSize);
-    density.filter = readFilter(line, density.filter);
     density.tolerance = line.number("tolerance", {.low = 1e-6, .high = 0.05}, density.tolerance);
-    density.tile = line.wholeNumber("tile", 0, kLargestPointTile, density.tile);
-    if (density.tile % 2 != 0) line.fail("tile", "an even number");
-    density.clamp = line.has("clamp");
-    request.iso = readIso(line, {.low = 0, .high = 1, .lowOpen = true, .highOpen = true});
-    density.iso = request.iso.value.value_or(density.iso);
-    if (asksForValues(line)) {
-        throw Error(ErrorKind::Usage, "--as values is for volumes, and '" + request.input +
-                                          "' holds points; expected density, level-set or fog");
-    }
-    request.as = readOutputKind(line).value_or(OutputKind());
-    density.shard = readShard(line);
-    if (!density.shard.isWhole() && request.as.kind != OutputKind::Kind::Density) {
-        throw Error(ErrorKind::Usage,
-                    "--as level-set or fog needs the whole, and --shard asks for a part; convert "
-                    "what is merged");
-    }
-    request.levels = readDetailLevels(line);
-    request.write.half = line.has("half");
-    if (!request.array) request.write.compression = readCompression(line);
+    readDensityOptions(line, request.output, density);
     return request;
 }
 
@@ -198,24 +162,6 @@ DensityResult densityOfPoints(CommandRun& run, PointRequest& request) {
     return surfaceToDensity(*source, request.density, run.progress());
 }
 
-// What is said, stored and rounded of a density.
-void finishPoints(CommandRun& run, const PointRequest& request, DensityResult& density) {
-    DensityMetadata& metadata = density.metadata;
-    if (request.write.half) {
-        metadata.storageError = roundToHalf(*density.grid);
-        metadata.gridVolume = densityIntegral(*density.grid);
-    }
-    setDensityMetadata(*density.grid, metadata);
-    if (const auto iso = isoFor(run, request.iso, density.grid)) {
-        metadata.iso = *iso;
-        setDensityMetadata(*density.grid, metadata);
-    }
-    sayDensity(run, density,
-               formatNumber(metadata.closureError, 2) + " measured by closure, tolerance " +
-                   formatNumber(metadata.tolerance, 2));
-    run.warn(density.warnings, ErrorKind::Result);
-}
-
 }  // namespace
 
 std::vector<OptionEntry> pointEntries() {
@@ -238,25 +184,12 @@ void convertPoints(ConvertJob& job) {
     PointRequest request = parsePoints(job.line());
     if (!job.begin()) return;
     CommandRun& run = job.run();
-    std::optional<AtomicFile> output;
-    if (!request.array) output.emplace(request.output);
+    std::optional<AtomicFile> file = request.output.openFile();
     DensityResult density = densityOfPoints(run, request);
-    finishPoints(run, request, density);
-    if (request.mesh) return writeMeshOutput(job, *output, *request.mesh, density.grid, nullptr);
-    const auto made = makeOutput(run, request.as, density.grid);
-    if (request.array) return request.array->write(run, *made);
-    openvdb::GridCPtrVec written{made};
-    if (request.levels > 0) {
-        ResampleOptions options;
-        options.filter = request.density.filter;
-        options.tolerance = request.density.tolerance;
-        for (const auto& level :
-             makeDetailLevels(density.grid, request.levels, options, run.progress())) {
-            if (request.write.half) roundToHalf(*level);
-            written.push_back(level);
-        }
-    }
-    job.writeVolume(*output, written, request.write);
+    finishDensity(run, request.output, density.grid, density.metadata);
+    sayDensity(run, density, exactErrorInWords(request.output, density.metadata));
+    run.warn(density.warnings, ErrorKind::Result);
+    writeSolid(job, file, request.output, request.density, density.grid);
 }
 
 }  // namespace bandvox::app

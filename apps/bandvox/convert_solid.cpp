@@ -5,13 +5,9 @@
 
 #include "color_grid.h"
 #include "command_run.h"
-#include "convert_to_array.h"
-#include "convert_volume.h"
 #include "density_report.h"
-#include "iso_option.h"
-#include "mesh_output.h"
-#include "output_kind.h"
 #include "solid_input.h"
+#include "solid_output.h"
 #include "stack_input.h"
 #include "standard_streams.h"
 #include "volume_options.h"
@@ -21,7 +17,6 @@
 #include <bandvox/bandlimit/soup_to_density.h>
 #include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/grid/density_grid.h>
-#include <bandvox/resample/detail_levels.h>
 #include <bandvox/source/mesh_source.h>
 #include <bandvox/source/shapes.h>
 
@@ -39,7 +34,6 @@
 namespace bandvox::app {
 namespace {
 
-constexpr int kLargestTile = 512;
 constexpr int kMostOversample = 64;
 
 // How far the integral of a sampled shape may be from its volume, relative, before it is worth a
@@ -51,21 +45,15 @@ enum class Route { Auto, Exact, Sampled, Winding };
 
 struct ConvertRequest {
     std::string input;
-    std::filesystem::path output;
     Route route = Route::Auto;
     Overlap overlap = Overlap::Union;
     DensityOptions density;
     bool color = false;
-    int levels = 0;  ///< coarser ones beside the density
     bool oversampleGiven = false;
     int samplesPerSide = FieldDensityOptions().oversample;  // of the sampled route
     int rowsPerVoxel = SoupDensityOptions().rowsPerVoxel;   // of that of the winding number
     std::optional<double> samplingTolerance;                ///< if it was asked for
-    VdbWriteOptions write;
-    std::optional<MeshOutput> mesh;      ///< instead of the density
-    std::unique_ptr<ArrayOutput> array;  ///< the same
-    IsoOption iso;
-    OutputKind kind;
+    SolidOutput output;
 };
 
 void readRoute(const CommandLine& line, ConvertRequest& request) {
@@ -107,12 +95,8 @@ void readRoute(const CommandLine& line, ConvertRequest& request) {
 ConvertRequest parseConvert(const CommandLine& line) {
     ConvertRequest request;
     request.input = line.positional(0);
-    const std::string output = line.requiredText("output");
-    request.array = ArrayOutput::read(line);
-    if (!request.array) request.mesh = readVdbOrMeshOutput(line);
+    request.output = readSolidOutput(line, "a solid");
     readStackRequest(line, request.input);  // refuses
-    request.output = outputPath(output);
-
     for (const char* name : {"grid", "background", "factor", "onto", "no-filter", "threshold"}) {
         if (!line.has(name)) continue;
         throw Error(ErrorKind::Usage, std::string("option --") + name + " is for volumes, and '" +
@@ -122,21 +106,7 @@ ConvertRequest parseConvert(const CommandLine& line) {
     readRoute(line, request);
     DensityOptions& density = request.density;
     readSize(line, density.resolution, density.voxelSize);
-    density.filter = readFilter(line, density.filter);
-    density.tile = line.wholeNumber("tile", 0, kLargestTile, density.tile);
-    if (density.tile % 2 != 0) {
-        throw Error(ErrorKind::Usage, "option --tile is '" + std::to_string(density.tile) +
-                                          "'; expected an even number");
-    }
-    const Range between{.low = 0, .high = 1, .lowOpen = true, .highOpen = true};
-    request.iso = readIso(line, between);
-    if (!request.iso.byVolume) density.iso = line.number("iso", between, density.iso);
-    if (asksForValues(line)) {
-        throw Error(ErrorKind::Usage, "--as values is for volumes, and '" + request.input +
-                                          "' is a solid; expected density, level-set or fog");
-    }
-    request.kind = readOutputKind(line).value_or(OutputKind());
-    density.clamp = line.has("clamp");
+    readDensityOptions(line, request.output, density);
     request.overlap = static_cast<Overlap>(line.choice("overlap", {"union", "sum"}, 0));
     density.sumOverlaps = request.overlap == Overlap::Sum;
 
@@ -145,15 +115,6 @@ ConvertRequest parseConvert(const CommandLine& line) {
         throw Error(ErrorKind::Usage, "--color takes a mesh with colours, and '" + request.input +
                                           "' is a built-in shape, which has none");
     }
-    request.levels = readDetailLevels(line);
-    density.shard = readShard(line);
-    if (!density.shard.isWhole() && request.kind.kind != OutputKind::Kind::Density) {
-        throw Error(ErrorKind::Usage,
-                    "--as level-set or fog needs the whole, and --shard asks for "
-                    "a part; convert what is merged");
-    }
-    request.write.half = line.has("half");
-    if (!request.array) request.write.compression = readCompression(line);
     return request;
 }
 
@@ -171,10 +132,8 @@ double samplingTolerance(const ConvertRequest& request, const DensityResult& res
 std::string errorInWords(const ConvertRequest& request, const DensityResult& result) {
     const DensityMetadata& metadata = result.metadata;
     std::string words;
-    if (isExact(result)) {
-        words = formatNumber(metadata.closureError, 2) + " measured by closure, tolerance " +
-                formatNumber(metadata.tolerance, 2);
-    } else if (std::isnan(metadata.samplingError)) {
+    if (isExact(result)) return exactErrorInWords(request.output, metadata);
+    if (std::isnan(metadata.samplingError)) {
         words = "not known, since an odd number of samples cannot be halved";
     } else {
         words = formatNumber(metadata.samplingError, 2) +
@@ -182,10 +141,7 @@ std::string errorInWords(const ConvertRequest& request, const DensityResult& res
                                              : " measured with every fourth row, tolerance ") +
                 formatNumber(samplingTolerance(request, result), 2);
     }
-    if (request.write.half) {
-        words += "; 16 bits change it by up to " + formatNumber(metadata.storageError, 2);
-    }
-    return words;
+    return words + storageErrorInWords(request.output, metadata);
 }
 
 /// What goes into the file.
@@ -276,22 +232,6 @@ void requireTolerance(const ConvertRequest& request, const DensityResult& result
                                                   : "--oversample), or a mesh that is closed"));
 }
 
-std::vector<openvdb::FloatGrid::Ptr> makeLevels(CommandRun& run, const ConvertRequest& request,
-                                                const openvdb::FloatGrid::Ptr& grid) {
-    ResampleOptions options;
-    options.filter = request.density.filter;
-    options.tolerance = std::max(request.density.tolerance, options.tolerance);
-    auto levels = makeDetailLevels(grid, request.levels, options, run.progress());
-    for (const auto& level : levels) {
-        if (request.write.half) roundToHalf(*level);
-        run.say("level    " + level->getName() + ": " +
-                formatCount(static_cast<std::int64_t>(level->activeVoxelCount()), "active voxel",
-                            "active voxels") +
-                " of side " + formatNumber(level->voxelSize().x()));
-    }
-    return levels;
-}
-
 }  // namespace
 
 void convertSolid(ConvertJob& job) {
@@ -299,39 +239,17 @@ void convertSolid(ConvertJob& job) {
     requireMeshOrShape("convert", request.input);
     if (!job.begin()) return;
     CommandRun& run = job.run();
-    std::optional<AtomicFile> output;
-    if (!request.array) output.emplace(request.output);
-
+    std::optional<AtomicFile> file = request.output.openFile();
     ConvertedGrids grids = isShape(request.input) ? ConvertedGrids{shapeToDensity(run, request), {}}
                                                   : meshToGrids(run, request);
     DensityResult& result = grids.density;
     requireTolerance(request, result);
-    if (request.write.half) {
-        // What is stated has to hold for what is in the file.
-        result.metadata.storageError = roundToHalf(*result.grid);
-        result.metadata.gridVolume = densityIntegral(*result.grid);
-    }
-    setDensityMetadata(*result.grid, result.metadata);
-    if (const auto iso = isoFor(run, request.iso, result.grid)) {
-        result.metadata.iso = *iso;
-        setDensityMetadata(*result.grid, result.metadata);
-    }
+    finishDensity(run, request.output, result.grid, result.metadata);
     sayDensity(run, result, errorInWords(request, result));
     if (grids.color) sayColors(run, *grids.color);
     run.warn(result.warnings, ErrorKind::Result);
-
-    if (request.mesh) {
-        const auto colors = grids.color ? grids.color->grid : nullptr;
-        return writeMeshOutput(job, *output, *request.mesh, result.grid, colors);
-    }
-    const auto made = makeOutput(run, request.kind, result.grid);
-    if (request.array) return request.array->write(run, *made);
-    openvdb::GridCPtrVec written{made};
-    if (request.levels > 0) {
-        for (const auto& level : makeLevels(run, request, result.grid)) written.push_back(level);
-    }
-    if (grids.color) written.push_back(grids.color->grid);
-    job.writeVolume(*output, written, request.write);
+    writeSolid(job, file, request.output, request.density, result.grid,
+               grids.color ? grids.color->grid : nullptr);
 }
 
 }  // namespace bandvox::app

@@ -56,12 +56,6 @@ std::optional<openvdb::CoordBBox> readBox(const CommandLine& line) {
     return box;
 }
 
-// What a density is asked to become, if nothing is said of it.
-bool isDensityOfSolid(const openvdb::FloatGrid& grid) {
-    const auto metadata = densityMetadata(grid);
-    return metadata && metadata->route != "filtered";
-}
-
 bool isAlongAxes(const openvdb::FloatGrid& grid) {
     const openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
     for (int row = 0; row < 3; ++row) {

@@ -7,6 +7,7 @@
 #include "iso_option.h"
 #include "mesh_output.h"
 #include "standard_streams.h"
+#include "vdb_input.h"
 #include "words.h"
 
 #include <bandvox/mesh/write_mesh.h>
@@ -54,6 +55,7 @@ void convertGridToMesh(ConvertJob& job) {
                         "active voxels") +
             (colors ? ", with colours" : ""));
     grids.clear();
+    warnOfPart(run, *grid, input);
     options.iso = isoFor(run, iso, grid);
     writeMeshOutput(job, output, options, grid, colors);
 }

@@ -12,6 +12,7 @@
 #include "mesh_output.h"
 #include "stack_input.h"
 #include "standard_streams.h"
+#include "vdb_input.h"
 #include "volume_options.h"
 #include "words.h"
 
@@ -115,6 +116,30 @@ void sayGrid(CommandRun& run, const openvdb::GridBase& grid) {
                         "active voxels"));
 }
 
+// A level set and its levels of detail, each that of the solid filtered for its lattice.
+openvdb::GridPtrVec convertLevelSet(CommandRun& run, const VolumeRequest& request,
+                                    const openvdb::FloatGrid::Ptr& grid,
+                                    const openvdb::math::Transform::ConstPtr& onto) {
+    if (!request.resample.shard.isWhole()) {
+        throw Error(ErrorKind::Usage, "--shard has no meaning for the level set '" +
+                                          grid->getName() + "', which is rebuilt as a whole");
+    }
+    openvdb::FloatGrid::Ptr first = grid;
+    if (request.resamples) {
+        first = rebuildLevelSet(run, grid, {request.lattice, onto, request.resample});
+    }
+    openvdb::GridPtrVec result{first};
+    for (int level = 1; level <= request.levels; ++level) {
+        LatticeRequest coarser;
+        coarser.factor = std::ldexp(1.0, level);
+        const auto lattice = targetFor(*first, coarser, nullptr);
+        const auto made = rebuildLevelSet(run, grid, {coarser, lattice, request.resample});
+        nameDetailLevel(*made, *first, level);
+        result.push_back(made);
+    }
+    return result;
+}
+
 // The grids that are written for one that is read; none if it is of a type that cannot be filtered.
 openvdb::GridPtrVec convertGrid(CommandRun& run, const VolumeRequest& request,
                                 const openvdb::GridBase::Ptr& grid,
@@ -125,6 +150,7 @@ openvdb::GridPtrVec convertGrid(CommandRun& run, const VolumeRequest& request,
         if (shard.index > 1) return {};
         return {grid};
     }
+    warnOfPart(run, *grid, request.input);
     const auto target = targetFor(*grid, request.lattice, onto);
     if (const auto vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grid)) {
         if (!request.resamples) return {grid};
@@ -136,13 +162,8 @@ openvdb::GridPtrVec convertGrid(CommandRun& run, const VolumeRequest& request,
     }
     openvdb::FloatGrid::Ptr floats = asFloatGrid(grid);
     // Filtered distances are none; those of the filtered solid are.
-    if (floats && floats->getGridClass() == openvdb::GRID_LEVEL_SET && request.resamples &&
-        request.resample.filter && request.levels == 0) {
-        if (!shard.isWhole()) {
-            throw Error(ErrorKind::Usage, "--shard has no meaning for the level set '" +
-                                              grid->getName() + "', which is rebuilt as a whole");
-        }
-        return {rebuildLevelSet(run, floats, {request.lattice, onto, request.resample})};
+    if (floats && floats->getGridClass() == openvdb::GRID_LEVEL_SET && request.resample.filter) {
+        return convertLevelSet(run, request, floats, onto);
     }
     if (!floats) {
         run.warn({"the grid '" + grid->getName() + "' of type " + grid->valueType() +
@@ -196,22 +217,25 @@ void setIso(openvdb::GridBase& grid, double iso) {
     }
 }
 
-// Rounds to 16 bits, if that is asked for, and says so in the grid.
-void finishGrid(CommandRun& run, const openvdb::GridBase::Ptr& converted,
+// Rounds to 16 bits, if that is asked for, and says so in the grid. True if it is a density, which
+// has an iso-value.
+bool finishGrid(CommandRun& run, const openvdb::GridBase::Ptr& converted,
                 const VolumeRequest& request) {
     openvdb::GridBase& grid = *converted;
-    if (densityMetadata(grid)) {
+    const bool isDensity = densityMetadata(grid).has_value();
+    if (isDensity) {
         const auto density = openvdb::gridPtrCast<openvdb::FloatGrid>(converted);
         if (const auto iso = isoFor(run, request.iso, density)) setIso(grid, *iso);
     }
     auto* floats = dynamic_cast<openvdb::FloatGrid*>(&grid);
-    if (!floats || !request.write.half) return;
+    if (!floats || !request.write.half) return isDensity;
     const double change = roundToHalf(*floats);
     if (auto metadata = densityMetadata(grid)) {
         metadata->storageError = std::max(metadata->storageError, change);
         metadata->gridVolume = densityIntegral(*floats);
         setDensityMetadata(grid, *metadata);
     }
+    return isDensity;
 }
 
 }  // namespace
@@ -251,14 +275,21 @@ void convertVolume(ConvertJob& job) {
 
     openvdb::GridCPtrVec written;
     std::int64_t activeVoxels = 0;
+    bool isoIsStored = false;
     for (openvdb::GridBase::Ptr& grid : grids) {
         for (const auto& converted : convertGrid(run, request, grid, onto)) {
-            finishGrid(run, converted, request);
+            isoIsStored = finishGrid(run, converted, request) || isoIsStored;
             sayGrid(run, *converted);
             activeVoxels += static_cast<std::int64_t>(converted->activeVoxelCount());
             written.push_back(converted);
         }
         grid.reset();
+    }
+    if (request.iso.isGiven() && !isoIsStored) {
+        throw Error(ErrorKind::Usage,
+                    "--iso is stored with densities, and '" + request.input +
+                        "' holds none that says what it is; give it to the commands that come "
+                        "after");
     }
     run.count("grids", written.size());
     run.count("active_voxels", activeVoxels);

@@ -98,7 +98,7 @@ openvdb::math::Transform::Ptr cubesFor(const openvdb::GridBase& grid, const Latt
                                        const openvdb::math::Transform::ConstPtr& onto) {
     auto target = targetFor(grid, request, onto);
     if (hasCubes(*target)) return target;
-    if (onto) {
+    if (onto && request.onto) {
         throw Error(
             ErrorKind::Usage,
             "--onto '" + *request.onto +

@@ -206,6 +206,11 @@ void runMerge(const CommandLine& line) {
     std::vector<openvdb::FloatGrid::ConstPtr> grids;
     for (const std::string& input : request.inputs) {
         if (!grids.empty()) read = readFile(run, input);
+        if (holdsShard(read)) {
+            throw Error(ErrorKind::Input, "'" + input + "' holds a part of a larger grid, and '" +
+                                              request.inputs[0] +
+                                              "' does not; join the parts first, by themselves");
+        }
         openvdb::FloatGrid::ConstPtr grid = chooseDensity(run, read, input, request);
         read.clear();
         if (!grids.empty()) grid = alignedTo(run, *grids.front(), grid, input, request);

@@ -40,6 +40,9 @@ void requireVdbOrMesh(const std::filesystem::path& path) {
     if (!isStream || isWritableMesh(path)) {
         const std::vector<std::string>& meshes = writableMeshExtensions();
         extensions.insert(extensions.end(), meshes.begin(), meshes.end());
+        for (const char* array : {".npy", ".nrrd", ".nhdr", ".mha", ".mhd", ".tif", "####.png"}) {
+            extensions.emplace_back(array);
+        }
     }
     requireExtension(path, extensions);
 }
@@ -98,7 +101,7 @@ std::optional<MeshOutput> readVdbOrMeshOutput(const CommandLine& line) {
         refuseOptions(line, {"adaptivity"}, "with a .vdb file as the output");
         return std::nullopt;
     }
-    refuseOptions(line, {"half", "compression", "lod"}, "with a mesh as the output");
+    refuseOptions(line, {"half", "compression", "lod", "shard"}, "with a mesh as the output");
     return readMeshOutput(line);
 }
 

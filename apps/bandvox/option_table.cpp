@@ -153,6 +153,21 @@ std::string suggestionFor(const CommandTable& table, const std::string& name) {
                            : "did you mean '--" + nearest + "'?";
 }
 
+namespace {
+
+// All options, those of a group together, in the order in which both come first.
+std::vector<OptionEntry> groupedOptions(const CommandTable& table) {
+    std::vector<OptionEntry> options = allOptions(table);
+    for (auto begin = options.begin(); begin != options.end();) {
+        begin = std::stable_partition(begin, options.end(), [group = begin->group](const auto& o) {
+            return o.group == group;
+        });
+    }
+    return options;
+}
+
+}  // namespace
+
 std::string helpText(const CommandTable& table) {
     std::string out = "Usage: bandvox " + table.name;
     for (const PositionalEntry& positional : table.positionals) {
@@ -166,7 +181,7 @@ std::string helpText(const CommandTable& table) {
         appendEntry(out, std::string(kTextIndent, ' ') + positional.name, positional.help);
     }
     std::string group;
-    for (const OptionEntry& option : allOptions(table)) {
+    for (const OptionEntry& option : groupedOptions(table)) {
         if (option.group != group) {
             group = option.group;
             out += '\n' + group + '\n';

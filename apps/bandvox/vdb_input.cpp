@@ -2,6 +2,7 @@
 
 #include "command_run.h"
 
+#include <bandvox/grid/join_shards.h>
 #include <bandvox/source/read_mesh.h>
 #include <bandvox/source/shapes.h>
 
@@ -20,6 +21,15 @@ void requireVdb(const std::string& verb, const std::string& input) {
                    ".vdb";
     }
     throw Error(ErrorKind::Input, message);
+}
+
+void warnOfPart(CommandRun& run, const openvdb::GridBase& grid, const std::string& file) {
+    const auto part = shardMetadata(grid);
+    if (!part || part->shard.isWhole()) return;
+    run.warn({"the grid '" + grid.getName() + "' of '" + file + "' is part " +
+              std::to_string(part->shard.index) + " of " + std::to_string(part->shard.count) +
+              " of a larger one, and ends where that was cut; join the parts by bandvox merge"},
+             ErrorKind::Input);
 }
 
 }  // namespace bandvox::app

@@ -124,7 +124,16 @@ TEST_F(ShardCommand, RefusesWhatIsNoWhole) {
     expect(3, {"part1.vdb", "part1.vdb", "part2.vdb"}, "another file");
     expect(3, {"part1.vdb", "part2.vdb", "other.vdb"}, "lattice");
     expect(3, {"part1.vdb", "whole.vdb"}, "no part");
+    expect(3, {"whole.vdb", "part1.vdb"}, "holds a part");
     expect(2, {"part1.vdb", "part2.vdb", "part3.vdb", "--operation", "max"}, "--operation");
+
+    for (const Names& more : {Names{"-o", "cut.ply"}, {"-o", "cut.vdb", "--factor", "2"}}) {
+        Names arguments{"convert", "part2.vdb"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const RunResult result = run(arguments);
+        EXPECT_EQ(result.status, 0) << result.err;
+        EXPECT_NE(result.err.find("part 2 of 3"), std::string::npos) << result.err;
+    }
 
     const auto refuse = [&](Names arguments, const std::string& words) {
         arguments.insert(arguments.begin(), {"convert", "shape:torus"});
@@ -133,6 +142,7 @@ TEST_F(ShardCommand, RefusesWhatIsNoWhole) {
         EXPECT_NE(result.err.find(words), std::string::npos) << result.err;
     };
     refuse({"-o", "no.vdb", "--shard", "0/3"}, "0/3");
+    refuse({"-o", "no.ply", "--shard", "1/3"}, "--shard");
     refuse({"-o", "no.vdb", "--shard", "4/3"}, "4/3");
     refuse({"-o", "no.vdb", "--shard", "half"}, "half");
     refuse({"-o", "no.vdb", "--shard", "1/3", "--lod", "2"}, "--lod");

@@ -189,6 +189,88 @@ TEST_F(SolidOfVolume, LevelSetsOnAnotherLatticeAreLevelSetsAgain) {
     }
 }
 
+TEST_F(SolidOfVolume, LevelsOfDetailOfALevelSetAreLevelSets) {
+    for (const Names& more : {Names{}, {"--factor", "1.5"}}) {
+        Names arguments{"ball_sdf.vdb", "-o", "levels.vdb", "--lod", "2"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const RunResult result = convert(arguments);
+        ASSERT_EQ(result.status, 0) << result.err;
+        const double side = more.empty() ? 0.05 : 0.075;
+        for (const int level : {0, 1, 2}) {
+            const std::string name = level == 0 ? "ball" : "ball_level_" + std::to_string(level);
+            const auto grid = read("levels.vdb", name);
+            ASSERT_TRUE(grid) << name;
+            EXPECT_EQ(grid->getGridClass(), openvdb::GRID_LEVEL_SET);
+            EXPECT_NEAR(grid->voxelSize()[0], side * (1 << level), 1e-12);
+            for (auto value = grid->cbeginValueOn(); value; ++value) {
+                const Vec3d place = grid->indexToWorld(value.getCoord());
+                const double distance = (place - Vec3d(0.5, -2, 30)).length() - 1;
+                // Filtering moves the surface of a ball inward.
+                ASSERT_NEAR(*value, distance, 0.05 * (1 << level) * side + 0.03) << name;
+            }
+        }
+    }
+}
+
+TEST_F(SolidOfVolume, TakesTheIsoValueOrSaysWhyNot) {
+    ASSERT_EQ(convert({"shape:sphere", "-o", "sphere.vdb", "-r", "40"}).status, 0);
+    const auto volumeOf = [&](const std::string& iso) {
+        Names arguments{"sphere.vdb", "-o",      "distance.vdb", "--as",
+                        "level-set",  "--stats", "iso.json",     "--iso"};
+        arguments.push_back(iso);
+        EXPECT_EQ(convert(arguments).status, 0);
+        const auto stats = nlohmann::json::parse(readText(*sFolder / "iso.json"));
+        return stats["counts"]["surface_volume"].get<double>();
+    };
+    EXPECT_GT(volumeOf("0.3"), 1.02 * volumeOf("0.7"));
+    const double ball = densityMetadata(*read("sphere.vdb", "density"))->sourceVolume;
+    EXPECT_NEAR(volumeOf("volume"), ball, 1e-4 * ball);
+
+    // Values and distances have none that could be stored.
+    for (const Names& arguments :
+         {Names{"ball.npy", "-o", "no.vdb", "--iso", "0.4"},
+          {"ball_sdf.vdb", "-o", "no.vdb", "--iso", "0.4"},
+          {"ball_sdf.vdb", "-o", "no.vdb", "--factor", "2", "--iso", "volume"}}) {
+        const RunResult result = convert(arguments);
+        EXPECT_EQ(result.status, 2) << result.err;
+        EXPECT_NE(result.err.find("--iso"), std::string::npos) << result.err;
+    }
+}
+
+TEST_F(SolidOfVolume, FilteredValuesAreNoDensityYet) {
+    auto fog = openvdb::FloatGrid::create(0.0F);
+    fog->setName("density");
+    fog->setGridClass(openvdb::GRID_FOG_VOLUME);
+    fog->denseFill(openvdb::CoordBBox(0, 0, 0, 39, 39, 39), 8.0F);
+    writeVdb(*sFolder / "fog.vdb", {fog});
+    ASSERT_EQ(convert({"fog.vdb", "-o", "filtered.vdb", "--factor", "2"}).status, 0);
+    ASSERT_EQ(densityMetadata(*read("filtered.vdb", "density"))->route, "filtered");
+    const RunResult result = convert({"filtered.vdb", "-o", "solid.vdb", "--as", "density"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const auto solid = read("solid.vdb", "density");
+    EXPECT_EQ(densityMetadata(*solid)->route, "exact");
+    for (auto value = solid->cbeginValueOn(); value; ++value) ASSERT_LE(*value, 1.1F);
+
+    const RunResult clamped = convert({"solid.vdb", "-o", "no.vdb", "--as", "density", "--clamp"});
+    EXPECT_EQ(clamped.status, 2) << clamped.err;
+    EXPECT_NE(clamped.err.find("--clamp"), std::string::npos) << clamped.err;
+}
+
+TEST_F(SolidOfVolume, KeepsTheUnit) {
+    auto ball =
+        openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(1.0F, openvdb::Vec3f(0), 0.1F);
+    setPlaceMetadata(*ball, {"mm", "LPS"});
+    writeVdb(*sFolder / "scan.vdb", {ball});
+    for (const char* kind : {"density", "level-set", "fog"}) {
+        const RunResult result =
+            convert({"scan.vdb", "-o", "made.vdb", "--as", kind, "--factor", "1.5"});
+        ASSERT_EQ(result.status, 0) << result.err;
+        const auto place = placeMetadata(*readVdb(*sFolder / "made.vdb").front());
+        EXPECT_EQ(place.unit, "mm") << kind;
+        EXPECT_EQ(place.space, "LPS") << kind;
+    }
+}
+
 TEST_F(SolidOfVolume, FogIsNothingOnTheSurface) {
     const RunResult result = convert({"shape:sphere", "-o", "fog.vdb", "--as", "fog", "-r", "40"});
     ASSERT_EQ(result.status, 0) << result.err;

@@ -99,6 +99,37 @@ TEST(DensityIntegral, CountsVoxelsAndTilesInWorldUnits) {
     EXPECT_EQ(densityIntegral(*openvdb::FloatGrid::create(0.0F)), 0);
 }
 
+TEST(DensityIntegral, IsNotNegativeOfAMirroredGrid) {
+    auto grid = openvdb::FloatGrid::create(0.0F);
+    grid->tree().setValueOn(openvdb::Coord(1, 2, 3), 0.5F);
+    openvdb::Mat4d mirror = openvdb::Mat4d::identity();
+    mirror(0, 0) = -2;
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(mirror));
+    EXPECT_DOUBLE_EQ(densityIntegral(*grid), 1);
+}
+
+TEST(PlaceMetadata, IsHandedOnAsFarAsItIsKnown) {
+    const auto grid = openvdb::FloatGrid::create(0.0F);
+    EXPECT_EQ(placeMetadata(*grid).unit, "");
+    setPlaceMetadata(*grid, {"mm", ""});
+    setPlaceMetadata(*grid, {"", "LPS"});
+    EXPECT_EQ(placeMetadata(*grid).unit, "mm");
+    EXPECT_EQ(placeMetadata(*grid).space, "LPS");
+    EXPECT_TRUE((*grid)["bandvox_unit"]);
+    EXPECT_TRUE((*grid)["bandvox_space"]);
+}
+
+TEST(DensityMetadata, OfFilteredValuesStandsForNoSolid) {
+    const auto grid = openvdb::FloatGrid::create(0.0F);
+    EXPECT_FALSE(isDensityOfSolid(*grid));
+    DensityMetadata metadata;
+    setDensityMetadata(*grid, metadata);
+    EXPECT_TRUE(isDensityOfSolid(*grid));
+    metadata.route = "filtered";
+    setDensityMetadata(*grid, metadata);
+    EXPECT_FALSE(isDensityOfSolid(*grid));
+}
+
 TEST_F(DensityGridFile, RoundTripKeepsEverything) {
     const openvdb::FloatGrid::Ptr grid = sampleGrid();
     setDensityMetadata(*grid, DensityMetadata{.version = "9"});

@@ -3,6 +3,7 @@
 #include <bandvox/core/error.h>
 #include <bandvox/grid/array_box.h>
 #include <bandvox/grid/array_to_grid.h>
+#include <bandvox/grid/density_grid.h>
 #include <bandvox/grid/write_array.h>
 #include <bandvox/source/array_source.h>
 
@@ -212,12 +213,33 @@ TEST_F(WriteArray, MapsARangeAndCountsWhatIsClipped) {
     EXPECT_EQ(plain.rounded, 4);
     EXPECT_NEAR(plain.minimum, -0.2, 1e-6);
     EXPECT_NEAR(plain.maximum, 1.2, 1e-6);
+    // What is no number stays that where it can.
+    options.voxels.type = VoxelType::Float;
+    const WrittenVoxels same = write(mFolder / "r.npy", ArrayFormat::Npy, *grid, options);
+    EXPECT_EQ(same.clipped, 0);
+    EXPECT_TRUE(std::isnan(stored(same).back()));
+    options.voxels.type = VoxelType::UInt8;
     options.voxels.range = {1.0, 1.0};
     expectRefused("the lower one first", ErrorKind::Usage,
                   [&] { write(mFolder / "r.npy", ArrayFormat::Npy, *grid, options); });
     options.voxels = {.type = VoxelType::Float, .range = {{0.0, 1.0}}};
     expectRefused("whole numbers", ErrorKind::Usage,
                   [&] { write(mFolder / "r.npy", ArrayFormat::Npy, *grid, options); });
+}
+
+TEST_F(WriteArray, KeepsTheUnitAndTheSpace) {
+    const auto grid = makeGrid(false);
+    setPlaceMetadata(*grid, {"mm", "left-posterior-superior"});
+    write(mFolder / "p.nrrd", ArrayFormat::Nrrd, *grid);
+    const auto array = openArray(mFolder / "p.nrrd");
+    EXPECT_EQ(array->info().unit, "mm");
+    EXPECT_EQ(array->info().space, "left-posterior-superior");
+    const auto back = placeMetadata(*arrayToGrid(*array));
+    EXPECT_EQ(back.unit, "mm");
+    // Nothing of a unit gets out of its quotes.
+    setPlaceMetadata(*grid, {"mm\"\nsizes: 1 1 1", ""});
+    write(mFolder / "p.nrrd", ArrayFormat::Nrrd, *grid);
+    EXPECT_EQ(openArray(mFolder / "p.nrrd")->info().unit, "");
 }
 
 TEST_F(WriteArray, TakesTheBoxThatIsAskedFor) {

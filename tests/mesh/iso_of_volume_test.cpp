@@ -69,5 +69,15 @@ TEST(IsoOfVolume, RefusesWhatCannotBe) {
     EXPECT_EQ(kindOf(levelSet, 1), ErrorKind::Input);
 }
 
+TEST(IsoOfVolume, SaysSoWhereNoValueEnclosesIt) {
+    // Two cubes of one value each: what is between their volumes is enclosed by none.
+    const auto grid = openvdb::FloatGrid::create(0.0F);
+    grid->denseFill(openvdb::CoordBBox(0, 0, 0, 9, 9, 9), 1.0F);
+    grid->denseFill(openvdb::CoordBBox(40, 0, 0, 49, 9, 9), 0.5F);
+    const double one = enclosedAt(grid, 0.6), both = enclosedAt(grid, 0.4);
+    EXPECT_EQ(kindOf(grid, 0.5 * (one + both)), ErrorKind::Result);
+    EXPECT_NEAR(isoOfVolume(grid, one).volume, one, 1e-5 * one);
+}
+
 }  // namespace
 }  // namespace bandvox

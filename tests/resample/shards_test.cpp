@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -83,6 +85,23 @@ TEST(Shards, OfTheExactRouteJoinToTheWhole) {
         expectWhole([&](const Shard& shard) {
             return surfaceToDensity(*source, smallTiles(shard, 0.021)).grid;
         });
+    }
+}
+
+TEST(Shards, HoldsEachStepOnceAndAsManyAsTheOthers) {
+    for (const int count : {1, 3, 4}) {
+        std::vector<int> held(static_cast<std::size_t>(count), 0);
+        for (std::int64_t step = 0; step < 38; ++step) {
+            int holders = 0;
+            for (int index = 1; index <= count; ++index) {
+                if (!Shard{index, count}.holds(step)) continue;
+                ++holders;
+                ++held[static_cast<std::size_t>(index - 1)];
+            }
+            EXPECT_EQ(holders, 1);
+        }
+        const auto [least, most] = std::minmax_element(held.begin(), held.end());
+        EXPECT_LE(*most - *least, 1);
     }
 }
 

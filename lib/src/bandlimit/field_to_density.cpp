@@ -71,7 +71,7 @@ std::vector<ColumnBlocks> fillColumns(const FieldSampling& sampling, const Shard
     WorkerPool<FieldColumn> pool([&] { return std::make_unique<FieldColumn>(sampling); });
     const ProgressStage stage(progress, "band-limiting", count * tiles.x());
     parallelFor(count, [&](std::int64_t i) {
-        if (!shard.holds(i, count)) return progress.advance(tiles.x());
+        if (!shard.holds(i)) return progress.advance(tiles.x());
         std::unique_ptr<FieldColumn> worker = pool.take();
         columns[i] = worker->fill(static_cast<int>(i / tiles.z()), static_cast<int>(i % tiles.z()),
                                   perColumn[i], progress);

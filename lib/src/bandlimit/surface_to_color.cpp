@@ -125,7 +125,7 @@ std::vector<ColorBlocks> fillColorColumns(const ColoredMesh& mesh, const Painted
     const ProgressStage stage(progress, "colouring", count);
     parallelFor(count, [&](std::int64_t i) {
         progress.throwIfInterrupted();
-        if (!shard.holds(i, count)) return progress.advance();
+        if (!shard.holds(i)) return progress.advance();
         const int y = static_cast<int>(i / layout.count.z());
         const int z = static_cast<int>(i % layout.count.z());
         std::vector<std::uint32_t> triangles;

@@ -69,7 +69,7 @@ std::vector<bool> columnsOf(const Shard& shard, const TileLayout& layout) {
     const std::int64_t count = static_cast<std::int64_t>(layout.count.y()) * layout.count.z();
     std::vector<bool> wanted(static_cast<std::size_t>(count));
     for (std::int64_t i = 0; i < count; ++i) {
-        wanted[static_cast<std::size_t>(i)] = shard.holds(i, count);
+        wanted[static_cast<std::size_t>(i)] = shard.holds(i);
     }
     return wanted;
 }

@@ -2,6 +2,7 @@
 
 #include <bandvox/core/error.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
@@ -59,6 +60,12 @@ bool isNrrdSpace(const std::string& space) {
     return false;
 }
 
+bool canBeQuoted(const std::string& unit) {
+    return !unit.empty() && std::none_of(unit.begin(), unit.end(), [](unsigned char c) {
+        return c < ' ' || c == '"' || c == '\\';
+    });
+}
+
 bool isOrientationCode(const std::string& space) {
     return space.size() == 3 && space.find_first_not_of("RLAPSI") == std::string::npos;
 }
@@ -89,7 +96,12 @@ std::string nrrdHeader(const ArrayHeaderRequest& request) {
     std::string text = "NRRD0004\ntype: ";
     text += wordFor(request.type, kWords, "NRRD");
     text += "\ndimension: 3\n";
-    text += isNrrdSpace(request.space) ? "space: " + request.space : "space dimension: 3";
+    const std::string& space = request.place.space;
+    text += isNrrdSpace(space) ? "space: " + space : "space dimension: 3";
+    if (canBeQuoted(request.place.unit)) {
+        text += "\nspace units:";
+        for (int axis = 0; axis < 3; ++axis) text += " \"" + request.place.unit + '"';
+    }
     text += "\nsizes: " + sizeText(request.size, " ");
     text += "\nspace directions:";
     for (int axis = 0; axis < 3; ++axis) {
@@ -123,7 +135,8 @@ std::string metaImageHeader(const ArrayHeaderRequest& request) {
     text += "\nTransformMatrix =" + directions;
     text += "\nOffset = " + threeTexts(rowOf(request.toWorld, 3), " ");
     text += "\nCenterOfRotation = 0 0 0";
-    if (isOrientationCode(request.space)) text += "\nAnatomicalOrientation = " + request.space;
+    const std::string& space = request.place.space;
+    if (isOrientationCode(space)) text += "\nAnatomicalOrientation = " + space;
     text += "\nElementSpacing = " + threeTexts(spacing, " ");
     text += "\nDimSize = " + sizeText(request.size, " ");
     text += std::string("\nElementType = ") + wordFor(request.type, kWords, "MetaImage");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bandvox/grid/density_grid.h>
 #include <bandvox/grid/write_array.h>
 
 #include <string>
@@ -11,7 +12,7 @@ struct ArrayHeaderRequest {
     openvdb::Coord size;
     VoxelType type = VoxelType::Float;
     openvdb::Mat4d toWorld;  ///< from the index in the array, acting on rows
-    std::string space;       ///< of bandvox_space; empty if not known
+    PlaceMetadata place;
     bool compressed = false;
     std::string valuesFile;  ///< its name; empty if the values follow
 };

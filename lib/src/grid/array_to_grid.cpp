@@ -139,10 +139,7 @@ openvdb::FloatGrid::Ptr arrayToGrid(ArraySource& source, const ArrayGridOptions&
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     setSourceMetadata(*grid, std::filesystem::path(info.name).filename().string());
     setArrayBox(*grid, {openvdb::Coord(0), info.size.offsetBy(-1)});
-    if (!info.unit.empty()) grid->insertMeta("bandvox_unit", openvdb::StringMetadata(info.unit));
-    if (!info.space.empty()) {
-        grid->insertMeta("bandvox_space", openvdb::StringMetadata(info.space));
-    }
+    setPlaceMetadata(*grid, {info.unit, info.space});
     return grid;
 }
 

@@ -241,9 +241,7 @@ openvdb::FloatGrid::Ptr arrayToSolidGrid(ArraySource& source, const ArraySolidOp
     grid->setName("density");
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     setSourceMetadata(*grid, std::filesystem::path(info.name).filename().string());
-    if (!info.space.empty()) {
-        grid->insertMeta("bandvox_space", openvdb::StringMetadata(info.space));
-    }
+    setPlaceMetadata(*grid, {info.unit, info.space});
     return grid;
 }
 

@@ -1,5 +1,7 @@
 #include <bandvox/grid/density_grid.h>
 
+#include <cmath>
+
 namespace bandvox {
 
 double densityIntegral(const openvdb::FloatGrid& grid) {
@@ -13,8 +15,8 @@ double densityIntegral(const openvdb::FloatGrid& grid) {
     auto tile = grid.tree().cbeginValueOn();
     tile.setMaxDepth(openvdb::FloatTree::ValueOnCIter::LEAF_DEPTH - 1);
     for (; tile; ++tile) sum += static_cast<double>(*tile) * tile.getVoxelCount();
-    // A voxel's volume is the determinant of the map's linear part.
-    return sum * grid.transform().voxelVolume();
+    // A voxel's volume is the determinant of the map's linear part, which is negative of a mirror.
+    return sum * std::abs(grid.transform().voxelVolume());
 }
 
 }  // namespace bandvox

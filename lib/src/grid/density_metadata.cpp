@@ -36,6 +36,11 @@ void setMember(openvdb::GridBase& grid, const char* name, const Value& value) {
     grid.insertMeta(key, openvdb::TypedMetadata<Value>(value));
 }
 
+std::string textOf(const openvdb::GridBase& grid, const char* name) {
+    const auto text = grid.getMetadata<openvdb::StringMetadata>(std::string(kPrefix) + name);
+    return text ? text->value() : std::string();
+}
+
 }  // namespace
 
 void setDensityMetadata(openvdb::GridBase& grid, const DensityMetadata& metadata) {
@@ -54,8 +59,7 @@ void setVoxelMetadata(openvdb::GridBase& grid, const std::string& source) {
 }
 
 std::string sourceOf(const openvdb::GridBase& grid) {
-    const auto source = grid.getMetadata<openvdb::StringMetadata>(std::string(kPrefix) + "source");
-    return source ? source->value() : std::string();
+    return textOf(grid, "source");
 }
 
 std::optional<DensityMetadata> densityMetadata(const openvdb::GridBase& grid) {
@@ -71,6 +75,20 @@ std::optional<DensityMetadata> densityMetadata(const openvdb::GridBase& grid) {
         if (typed) value = typed->value();
     });
     return metadata;
+}
+
+bool isDensityOfSolid(const openvdb::GridBase& grid) {
+    const auto metadata = densityMetadata(grid);
+    return metadata && metadata->route != "filtered";
+}
+
+PlaceMetadata placeMetadata(const openvdb::GridBase& grid) {
+    return {textOf(grid, "unit"), textOf(grid, "space")};
+}
+
+void setPlaceMetadata(openvdb::GridBase& grid, const PlaceMetadata& place) {
+    if (!place.unit.empty()) setMember(grid, "unit", place.unit);
+    if (!place.space.empty()) setMember(grid, "space", place.space);
 }
 
 }  // namespace bandvox

@@ -129,6 +129,7 @@ bool haveOneFilter(const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
 void describeMerged(const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
                     const MergeOptions& options, const MergeRule& rule, MergeResult& result) {
     const std::string source = mergedSource(grids, options.operation);
+    setPlaceMetadata(*result.grid, placeMetadata(*grids.front()));
     std::vector<DensityMetadata> inputs;
     if (!haveOneFilter(grids, inputs, result.warnings)) {
         setSourceMetadata(*result.grid, source);

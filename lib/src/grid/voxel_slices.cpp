@@ -91,12 +91,15 @@ void encodeRow(const Encoding& encoding, std::span<const float> values, char* to
         counts.minimum = std::min(counts.minimum, values[i]);
         counts.maximum = std::max(counts.maximum, values[i]);
         double value = (double(values[i]) - encoding.low) * encoding.factor;
-        if (!(value >= encoding.least - encoding.slack) ||
-            !(value <= encoding.largest + encoding.slack)) {
+        const bool isKept = !encoding.rounds && std::isnan(value);
+        if (!isKept && (!(value >= encoding.least - encoding.slack) ||
+                        !(value <= encoding.largest + encoding.slack))) {
             ++counts.clipped;
         }
-        // What is no number becomes the least.
-        value = value >= encoding.least ? std::min(value, encoding.largest) : encoding.least;
+        // What is no number becomes the least whole one.
+        if (!isKept) {
+            value = value >= encoding.least ? std::min(value, encoding.largest) : encoding.least;
+        }
         if (encoding.rounds) {
             const double whole = std::nearbyint(value);
             if (whole != value) ++counts.rounded;

@@ -2,6 +2,7 @@
 #include "grid/voxel_slices.h"
 
 #include <bandvox/core/error.h>
+#include <bandvox/grid/density_grid.h>
 #include <bandvox/grid/write_array.h>
 
 #include <zlib.h>
@@ -87,11 +88,6 @@ void closeStream(AtomicFile& file, std::ofstream& stream) {
                 "cannot write " + file.target().string() + ": " + std::strerror(errno));
 }
 
-std::string spaceOf(const openvdb::GridBase& grid) {
-    const auto space = grid.getMetadata<openvdb::StringMetadata>("bandvox_space");
-    return space ? space->value() : std::string();
-}
-
 std::string headerText(ArrayFormat format, const ArrayHeaderRequest& request) {
     switch (format) {
         case ArrayFormat::Npy:
@@ -146,7 +142,7 @@ WrittenVoxels writeArray(AtomicFile& file, AtomicFile* values, ArrayFormat forma
     request.type = options.voxels.type;
     request.toWorld = grid.transform().baseMap()->getAffineMap()->getMat4();
     request.toWorld.preTranslate(slices.box().min().asVec3d());
-    request.space = spaceOf(grid);
+    request.place = placeMetadata(grid);
     request.compressed = options.compress;
     if (values) request.valuesFile = values->target().filename().string();
     const std::string header = headerText(format, request);

@@ -5,6 +5,7 @@
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/parallel.h>
+#include <bandvox/grid/density_grid.h>
 #include <bandvox/grid/write_image_stack.h>
 
 #include <algorithm>
@@ -61,9 +62,8 @@ SliceOutputInfo outputInfo(const fs::path& path, const VoxelSlices& slices,
 void calibrateOutput(const openvdb::FloatGrid& grid, int pages, SliceOutputInfo& info) {
     if (info.extension != ".tif") return;
     const openvdb::Vec3d spacing = spacingOf(grid);
-    const auto unit = grid.getMetadata<openvdb::StringMetadata>("bandvox_unit");
     info.resolution = {1 / spacing[0], 1 / spacing[1]};
-    info.description = calibrationText(pages, spacing[2], unit ? unit->value() : std::string());
+    info.description = calibrationText(pages, spacing[2], placeMetadata(grid).unit);
 }
 
 [[noreturn]] void failImage(const fs::path& path, const Error& error) {

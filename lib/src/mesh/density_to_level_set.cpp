@@ -247,6 +247,7 @@ LevelSetResult densityToLevelSet(const openvdb::FloatGrid::ConstPtr& grid,
     result.grid->setName("surface");
     result.grid->setGridClass(openvdb::GRID_LEVEL_SET);
     setSourceMetadata(*result.grid, sourceOf(*grid));
+    setPlaceMetadata(*result.grid, placeMetadata(*grid));
     return result;
 }
 

@@ -25,6 +25,7 @@ struct IsoTrial {
 
 [[noreturn]] void failToEnclose(const openvdb::FloatGrid& grid, double volume,
                                 const IsoTrial& trial) {
+    // As where all of a part of the grid is of one value.
     throw Error(ErrorKind::Result, "no iso-value of the grid \"" + grid.getName() +
                                        "\" encloses a volume of " + inShort(volume) + ": " +
                                        inShort(trial.iso) + " encloses " +
@@ -78,6 +79,7 @@ VolumeIso isoOfVolume(const openvdb::FloatGrid::ConstPtr& grid, double volume, P
         if (isTooLarge == wasTooLarge) (isTooLarge ? less : more).difference *= 0.5;
         (isTooLarge ? more : less) = trial;
     }
+    if (!isDone(trial)) failToEnclose(*grid, volume, trial);
     return {trial.iso, trial.difference + volume};
 }
 

@@ -26,13 +26,17 @@ std::vector<openvdb::FloatGrid::Ptr> makeDetailLevels(const openvdb::FloatGrid::
         const openvdb::math::Transform::Ptr lattice = finer->transform().copy();
         lattice->preScale(2.0);
         const auto coarser = resampleGrid(finer, *lattice, options, progress).grid;
-        coarser->setName(grid->getName() + "_level_" + std::to_string(level));
-        if ((*coarser)["MultiResGrid_Level"]) coarser->removeMeta("MultiResGrid_Level");
-        coarser->insertMeta("MultiResGrid_Level", openvdb::Int64Metadata(level));
+        nameDetailLevel(*coarser, *grid, level);
         result.push_back(coarser);
         finer = coarser;
     }
     return result;
+}
+
+void nameDetailLevel(openvdb::GridBase& grid, const openvdb::GridBase& finest, int level) {
+    grid.setName(finest.getName() + "_level_" + std::to_string(level));
+    if (grid["MultiResGrid_Level"]) grid.removeMeta("MultiResGrid_Level");
+    grid.insertMeta("MultiResGrid_Level", openvdb::Int64Metadata(level));
 }
 
 }  // namespace bandvox

@@ -117,7 +117,7 @@ openvdb::FloatGrid::Ptr runStep(const Step& step, const openvdb::math::Transform
         const ProgressStage stage(progress, "filtering", static_cast<std::int64_t>(blocks.size()));
         parallelFor(static_cast<std::int64_t>(blocks.size()), [&](std::int64_t i) {
             progress.throwIfInterrupted();
-            if (!step.shard.holds(i, static_cast<std::int64_t>(blocks.size()))) {
+            if (!step.shard.holds(i)) {
                 return progress.advance();
             }
             const Coord& block = blocks[static_cast<std::size_t>(i)];

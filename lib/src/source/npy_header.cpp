@@ -93,7 +93,7 @@ ArrayHeader readNpyHeader(const std::filesystem::path& path, std::istream& strea
     if (!shape.starts_with('(') || close == std::string_view::npos) {
         failArray(path, "its header has no shape");
     }
-    const std::vector<double> sizes = numbersIn(path, shape.substr(0, close), 3, "sizes");
+    const std::vector<double> sizes = numbersIn(path, shape.substr(0, close + 1), 3, "sizes");
     header.info.size = arraySize(path, sizes);
     header.info.axes = fortran ? std::array{0, 1, 2} : std::array{2, 1, 0};
     header.info.toWorld = openvdb::Mat4d::identity();

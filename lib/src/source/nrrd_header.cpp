@@ -171,6 +171,20 @@ openvdb::Mat4d nrrdTransform(const std::filesystem::path& path, const Fields& fi
     return matrix;
 }
 
+// The unit of lengths, if it is one for all axes, as "mm" "mm" "mm".
+std::string nrrdUnit(const std::string& text) {
+    std::vector<std::string> units;
+    std::size_t open = 0;
+    while ((open = text.find('"', open)) != std::string::npos) {
+        const std::size_t close = text.find('"', open + 1);
+        if (close == std::string::npos) break;
+        units.push_back(trimmed(text.substr(open + 1, close - open - 1)));
+        open = close + 1;
+    }
+    const bool isOne = units.size() == 3 && units[0] == units[1] && units[0] == units[2];
+    return isOne ? units[0] : "";
+}
+
 ArrayHeader::Encoding nrrdEncoding(const std::filesystem::path& path, const std::string& name) {
     if (name == "raw") return ArrayHeader::Encoding::Raw;
     if (name == "gzip" || name == "gz") return ArrayHeader::Encoding::Zlib;
@@ -202,6 +216,7 @@ ArrayHeader readNrrdHeader(const std::filesystem::path& path, std::istream& stre
     header.info.axes = {0, 1, 2};
     header.info.toWorld = nrrdTransform(path, fields, header.info.hasTransform);
     header.info.space = fieldOf(fields, "space");
+    header.info.unit = nrrdUnit(fieldOf(fields, "space units", "units"));
     const auto skip = [&](const char* name, const char* other) {
         const std::string text = fieldOf(fields, name, other);
         return text.empty() ? std::int64_t(0)

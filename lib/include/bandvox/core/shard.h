@@ -11,11 +11,9 @@ struct Shard {
 
     bool isWhole() const { return count == 1; }
 
-    /// True if step `i` of `steps` belongs to this part: a run of them, as long as the others to
-    /// within one.
-    bool holds(std::int64_t i, std::int64_t steps) const {
-        return i >= (index - 1) * steps / count && i < index * steps / count;
-    }
+    /// True if step `i` of the work belongs to this part: they are dealt out one by one, since
+    /// neighbours take about as long.
+    bool holds(std::int64_t i) const { return i % count == index - 1; }
 };
 
 /// Throws Error(ErrorKind::Usage) unless 1 ≤ index ≤ count ≤ 100 000.

@@ -44,6 +44,21 @@ void setDensityMetadata(openvdb::GridBase& grid, const DensityMetadata& metadata
 /// then it is no band-limited density of this library.
 std::optional<DensityMetadata> densityMetadata(const openvdb::GridBase& grid);
 
+/// True if `grid` is a density of this library that stands for a solid: of other programs' grids
+/// that were filtered that is not known.
+bool isDensityOfSolid(const openvdb::GridBase& grid);
+
+/// What a grid says of its world, stored as bandvox_unit and bandvox_space; empty if not known.
+struct PlaceMetadata {
+    std::string unit;   ///< of lengths, as "mm"
+    std::string space;  ///< where the axes point, as "LPS" or "left-posterior-superior"
+};
+
+PlaceMetadata placeMetadata(const openvdb::GridBase& grid);
+
+/// Stores what is known, and leaves the rest as it was.
+void setPlaceMetadata(openvdb::GridBase& grid, const PlaceMetadata& place);
+
 /// Stores in a grid what made it and from what: bandvox_version and bandvox_source.
 void setSourceMetadata(openvdb::GridBase& grid, const std::string& source);
 
