@@ -134,6 +134,15 @@ GridSolid readArraySolid(CommandRun& run, const GridSolidRequest& request) {
     return solid;
 }
 
+// What nothing is has to be outside.
+void requireAbove(const openvdb::FloatGrid& grid, double threshold) {
+    const double background = grid.background();
+    if (grid.getGridClass() == openvdb::GRID_LEVEL_SET || threshold > background) return;
+    throw Error(ErrorKind::Usage, "option --threshold is " + formatNumber(threshold) +
+                                      "; expected a number above the background of the grid '" +
+                                      grid.getName() + "', " + formatNumber(background));
+}
+
 GridSolid readGridSolid(CommandRun& run, const GridSolidRequest& request) {
     run.say("read     " + request.input);
     if (request.isArray()) return readArraySolid(run, request);
@@ -153,7 +162,10 @@ GridSolid readGridSolid(CommandRun& run, const GridSolidRequest& request) {
                                           "truths");
     }
     warnOfPart(run, *solid.grid, request.input);
-    if (request.threshold) solid.iso = request.threshold->low;
+    if (request.threshold) {
+        solid.iso = request.threshold->low;
+        requireAbove(*solid.grid, *solid.iso);
+    }
     solid.name = sourceOf(*solid.grid);
     if (solid.name.empty()) solid.name = std::filesystem::path(request.input).filename().string();
     return solid;
