@@ -157,6 +157,9 @@ TEST_F(ArrayFile, ReadsNrrdInsideAndBeside) {
                                        valueBytes<std::int16_t>(false, true)));
     expectValues(
         write("gzip.nrrd", head + "encoding: gzip\nendian: little\n\n" + packed(raw, true)));
+    expectValues(write("joined.nrrd", head + "encoding: gzip\nendian: little\n\n" +
+                                          packed(raw.substr(0, 50), true) +
+                                          packed(raw.substr(50), true)));
     std::string text;
     for (int i = 0; i < 60; ++i) {
         text += std::to_string(valueAt(i % 5, i / 5 % 3, i / 15)) + (i % 7 == 0 ? "\n" : " ");

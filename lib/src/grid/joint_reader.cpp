@@ -33,11 +33,15 @@ int sideAtDepth(int depth) {
 template <typename Visit>
 void visitCubes(const openvdb::Coord& first, int side, const Visit& visit) {
     const openvdb::Coord begin = first & ~(side - 1);
-    const openvdb::Coord last = first.offsetBy(side - 1);
-    openvdb::Coord at;
-    for (at[0] = begin[0]; at[0] <= last[0]; at[0] += side) {
-        for (at[1] = begin[1]; at[1] <= last[1]; at[1] += side) {
-            for (at[2] = begin[2]; at[2] <= last[2]; at[2] += side) visit(at);
+    // Along each axis there are two, or one if the box is one of them; counted, as the ends of the
+    // last ones may be more than an index holds.
+    int counts[3];
+    for (int axis = 0; axis < 3; ++axis) counts[axis] = first[axis] == begin[axis] ? 1 : 2;
+    for (int x = 0; x < counts[0]; ++x) {
+        for (int y = 0; y < counts[1]; ++y) {
+            for (int z = 0; z < counts[2]; ++z) {
+                visit(begin.offsetBy(x * side, y * side, z * side));
+            }
         }
     }
 }

@@ -1,5 +1,6 @@
 #include "grid/guarded_reads.h"
 #include "grid/leaf_reading.h"
+#include "grid/sound_extent.h"
 #include "grid/sound_transform.h"
 
 #include <bandvox/core/atomic_file.h>
@@ -113,6 +114,8 @@ openvdb::GridPtrVec readGrids(const ByteSource& source, const std::string& name)
     for (const openvdb::GridBase::Ptr& grid : grids) {
         const std::string fault = transformFault(grid->transform());
         if (!fault.empty()) failInput(name, "grid '" + grid->getName() + "' " + fault);
+        const std::string extent = extentFault(*grid);
+        if (!extent.empty()) failInput(name, "grid '" + grid->getName() + "' " + extent);
     }
     return grids;
 }

@@ -111,19 +111,31 @@ class ValueBytes {
         mUnpacks = true;
     }
 
+    // True if another gzip stream follows the one that ended, as where files were joined.
+    bool beginMember() {
+        constexpr Bytef kGzip = 0x1f;
+        if (!fillPacked() || *mZlib.next_in != kGzip) return false;
+        return inflateReset(&mZlib) == Z_OK;
+    }
+
+    // False at the end of the file.
+    bool fillPacked() {
+        if (mZlib.avail_in > 0) return true;
+        mZlib.avail_in = static_cast<uInt>(readPlain(mPacked.data(), mPacked.size()));
+        mZlib.next_in = reinterpret_cast<Bytef*>(mPacked.data());
+        return mZlib.avail_in > 0;
+    }
+
     std::size_t unpack(char* to, std::size_t count) {
         constexpr std::size_t kMost = std::size_t(1) << 30;
         mZlib.next_out = reinterpret_cast<Bytef*>(to);
         const auto room = static_cast<uInt>(std::min(count, kMost));
         mZlib.avail_out = room;
         while (mZlib.avail_out == room) {
-            if (mZlib.avail_in == 0) {
-                mZlib.avail_in = static_cast<uInt>(readPlain(mPacked.data(), mPacked.size()));
-                mZlib.next_in = reinterpret_cast<Bytef*>(mPacked.data());
-                if (mZlib.avail_in == 0) return 0;
-            }
+            if (!fillPacked()) return 0;
             const int status = inflate(&mZlib, Z_NO_FLUSH);
-            if (status == Z_STREAM_END) break;
+            if (status == Z_STREAM_END && !beginMember()) break;
+            if (status == Z_STREAM_END) continue;
             if (status != Z_OK && status != Z_BUF_ERROR) {
                 failArray(file(), "its compressed values are damaged");
             }
