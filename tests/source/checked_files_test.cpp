@@ -25,7 +25,7 @@ TEST(CheckedFiles, TexturesBelongToAMaterial) {
     for (const std::string& bytes :
          {"map_Kd a.png\n"s, "Map_Kd a.png\n"s, "bump a.png\nnewmtl red\n"s, "Kd 1 1 1\ndisp a"s,
           "# red\\\nnorm a.png"s, "a\rrefl a"s, "a\fmap_Ka a"s, "a\0map_Ka a"s,
-          "NEWMTL red\nmap_Kd a"s}) {
+          "NEWMTL red\nmap_Kd a"s, "aniso 0.5\n"s, "\0K\0a"s, "a"s}) {
         EXPECT_THROW(check(bytes), Error) << bytes;
     }
 }

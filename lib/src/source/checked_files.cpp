@@ -23,6 +23,8 @@ Assimp::IOStream* CheckedFiles::Open(const char* path, const char* mode) {
 
 void checkMaterials(const FileContents& file) {
     constexpr std::array<std::string_view, 5> kTextures = {"map_", "bump", "disp", "norm", "refl"};
+    // Whatever begins like "aniso" is taken for it.
+    constexpr char kAnisotropy = 'a';
     // What ends a line for the importer; it takes a statement only where a line begins.
     constexpr std::string_view kLineEnds("\n\r\f\0", 4);
     const std::string_view text = file.bytes;
@@ -33,9 +35,11 @@ void checkMaterials(const FileContents& file) {
         std::string word(line.substr(0, 4));
         std::transform(word.begin(), word.end(), word.begin(),
                        [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        if (std::find(kTextures.begin(), kTextures.end(), word) != kTextures.end()) {
-            file.fail("has a texture, \"" + std::string(line.substr(0, 40)) +
-                      "\", before its first material; expected \"newmtl\" first");
+        const bool isTexture =
+            std::find(kTextures.begin(), kTextures.end(), word) != kTextures.end();
+        if (isTexture || line.starts_with(kAnisotropy)) {
+            file.fail("has \"" + std::string(line.substr(0, 40)) +
+                      "\" before its first material; expected \"newmtl\" first");
         }
         begin = end + 1;
     }

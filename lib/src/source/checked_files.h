@@ -26,8 +26,8 @@ class CheckedFiles final : public Assimp::DefaultIOSystem {
     bool mIsObj;
 };
 
-/// Checks the materials of an .obj file: the importer puts a texture that stands before the first
-/// material into one that is not there. Throws Error(ErrorKind::Input).
+/// Checks the materials of an .obj file: the importer puts a texture, or an anisotropy, that stands
+/// before the first material into one that is not there. Throws Error(ErrorKind::Input).
 void checkMaterials(const FileContents& file);
 
 }  // namespace bandvox
