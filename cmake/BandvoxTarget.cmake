@@ -4,6 +4,9 @@ function(bandvox_configure_target target)
         -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align
         -Wimplicit-fallthrough -Wno-missing-field-initializers
         $<$<BOOL:${BANDVOX_WARNINGS_AS_ERRORS}>:-Werror>)
+    if(BANDVOX_FUZZ)
+        target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+    endif()
     if(BANDVOX_SANITIZE)
         target_compile_options(${target} PRIVATE -fsanitize=${BANDVOX_SANITIZE}
             -fno-omit-frame-pointer -fno-sanitize-recover=all)

@@ -1,16 +1,20 @@
 """Small files that are whole, of every format that the command reads; make-broken-files breaks them.
 
-A sample has a name, how it is used (USES of test-broken-files), its bytes, and files that have to be
-beside it. What the command writes is made by it; the rest is put together here.
+A sample has a name, which the command is given, how it is used (USES of test-broken-files), its bytes,
+and files that have to be beside it. It has none of its own if the name stands for several: a folder,
+or a pattern. What the command writes is made by it; the rest is put together here.
 """
 
 import base64
 import dataclasses
 import json
+import math
 import os
 import struct
 import subprocess
 import zlib
+
+import broken_scans as scans
 
 POINTS = [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1),
           (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)]
@@ -22,10 +26,20 @@ TRIANGLES = [corners for a, b, c, d in SIDES for corners in ((a, b, c), (a, c, d
 class Sample:
     name: str
     use: str
-    data: bytes
+    data: bytes | None
     beside: dict = dataclasses.field(default_factory=dict)
     # The file that is broken if it is not the one that is given: one of `beside`.
     broken: str = ""
+
+    def victim(self):
+        """The name of what is broken."""
+        return self.broken or self.name
+
+    def content(self):
+        return self.beside[self.broken] if self.broken else self.data
+
+    def kind(self):
+        return os.path.splitext(self.victim())[1]
 
 
 def lines(rows, form):
@@ -194,32 +208,6 @@ def radiance():
     return b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n" + bytes((90, 120, 150, 129)) * 8
 
 
-def dicom():
-    """A slice of 4 x 4 values, explicit VR, little endian."""
-    def element(group, number, kind, value):
-        value += (b"\0" if kind in (b"UI", b"OW") else b" ") * (len(value) % 2)
-        long = kind in (b"OB", b"OW")
-        return (struct.pack("<HH2s", group, number, kind) +
-                struct.pack("<HI" if long else "<H", *((0,) if long else ()), len(value)) + value)
-    def short(group, number, value):
-        return element(group, number, b"US", struct.pack("<H", value))
-    meta = (element(2, 1, b"OB", b"\0\1") + element(2, 2, b"UI", b"1.2.840.10008.5.1.4.1.1.2") +
-            element(2, 3, b"UI", b"1.2.3.4") + element(2, 16, b"UI", b"1.2.840.10008.1.2.1"))
-    body = (element(8, 0x16, b"UI", b"1.2.840.10008.5.1.4.1.1.2") +
-            element(8, 0x18, b"UI", b"1.2.3.4") + element(8, 0x60, b"CS", b"CT") +
-            element(0x20, 0xd, b"UI", b"1.2.3") + element(0x20, 0xe, b"UI", b"1.2.3.1") +
-            element(0x20, 0x32, b"DS", b"0\\0\\0") +
-            element(0x20, 0x37, b"DS", b"1\\0\\0\\0\\1\\0") + short(0x28, 2, 1) +
-            element(0x28, 4, b"CS", b"MONOCHROME2") + short(0x28, 0x10, 4) +
-            short(0x28, 0x11, 4) + element(0x28, 0x30, b"DS", b"0.5\\0.5") +
-            short(0x28, 0x100, 16) + short(0x28, 0x101, 16) + short(0x28, 0x102, 15) +
-            short(0x28, 0x103, 0) + element(0x28, 0x1052, b"DS", b"-10") +
-            element(0x28, 0x1053, b"DS", b"2") +
-            element(0x7fe0, 0x10, b"OW", struct.pack("<16H", *range(0, 1600, 100))))
-    return (bytes(128) + b"DICM" + element(2, 0, b"UL", struct.pack("<I", len(meta))) + meta +
-            body)
-
-
 def meshes():
     text = gltf("cube.bin")
     material = b"newmtl red\nKd 1 0 0\nmap_Kd cube.png\n"
@@ -269,16 +257,65 @@ def arrays():
     yield Sample("values.mhd", "array", (meta % ("", "values.raw")).encode(), raw,
                  broken="values.raw")
     yield Sample("slice.png", "array", png(channels=1))
-    yield Sample("slice.dcm", "array", dicom())
+
+
+def stacks():
+    for syntax in ("IMPLICIT", "EXPLICIT", "DEFLATED", "BIG_ENDIAN", "JPEG_BASELINE", "RLE"):
+        yield Sample(f"{syntax.lower()}.dcm", "array", scans.dicom(getattr(scans, syntax)))
+    yield Sample("solid.dcm", "array", scans.dicom(frames=3))
+    series = {f"series/{z}.dcm": scans.dicom(z=z) for z in range(3)}
+    yield Sample("series", "array", None, series, broken="series/1.dcm")
+    for way in ("none", "zip", "packbits"):
+        yield Sample(f"{way}.strips.tif", "array", scans.tiff(way, pages=2))
+    yield Sample("zip.tiles.tif", "array", scans.tiff("zip", tiled=True))
+    yield Sample("motorola.tif", "array", scans.tiff(order=">"))
+    tiffs = {f"slices/{z}.tif": scans.tiff() for z in range(3)}
+    yield Sample("slices", "array", None, tiffs, broken="slices/2.tif")
+    pngs = {f"page.{z}.png": png(channels=1) for z in range(3)}
+    yield Sample("page.#.png", "array", None, pngs, broken="page.0.png")
+
+
+def points():
+    """On a ball, with normals and radii as far as they have names."""
+    ring = [(math.cos(a) * math.sin(b), math.sin(a) * math.sin(b), math.cos(b))
+            for a in (2 * math.pi * i / 12 for i in range(12))
+            for b in (math.pi * (j + 0.5) / 6 for j in range(6))]
+    names = ("x", "y", "z", "nx", "ny", "nz", "radius")
+    rows = [(*p, *p, 0.3) for p in ring]
+    yield Sample("balls.csv", "points",
+                 (",".join(names) + "\n" + lines(rows, ",".join(["%.4f"] * 7))).encode())
+    yield Sample("surface.xyz", "points",
+                 lines([r[:6] for r in rows], " ".join(["%.4f"] * 6)).encode())
+    yield Sample("bare.txt", "points", lines(ring, "%.4f;%.4f;%.4f").encode())
+    for encoding in ("ascii", "binary_little_endian", "binary_big_endian"):
+        head = (f"ply\nformat {encoding} 1.0\nelement vertex {len(rows)}\n" +
+                "".join(f"property float {n}\n" for n in names) + "end_header\n").encode()
+        order = "<" if "little" in encoding else ">"
+        body = (lines(rows, " ".join(["%.4f"] * 7)).encode() if encoding == "ascii" else
+                b"".join(struct.pack(order + "7f", *r) for r in rows))
+        yield Sample(f"points.{encoding}.ply", "points", head + body)
 
 
 def texts(good):
     scene = {"objects": [{"file": "good.vdb", "color": [0.8, 0.7, 0.6], "roughness": 0.3}],
              "lights": [{"direction": [0, 1, 1], "color": [0.9, 0.9, 0.9], "size": 2}],
              "camera": {"eye": [0, 0, 5], "fov": 40}, "picture": {"res": [16, 16], "samples": 1}}
+    rich = {"objects": [{"file": "good.vdb", "transparency": 1, "refraction": 1.5, "scale": 0.5,
+                         "translate": [0, 1, 0]},
+                        {"file": "good.vdb", "kind": "volume", "density": 2}],
+            "lights": [{"position": [3, 2, 1], "color": [5, 5, 5], "size": 0.2}],
+            "environment": {"file": "sky.png", "turn": 90, "visible": True},
+            "picture": {"res": [12, 12], "samples": 2, "shadows": True, "gather": 1}}
     options = b"# What all shots use.\norder = 2\ncutoff = 0.16\ntolerance = 0.001\nclamp = true\n"
     yield Sample("plain.json", "scene", json.dumps(scene, indent=1).encode(), {"good.vdb": good})
+    beside = {"good.vdb": good, "sky.png": png(8, 4)}
+    text = json.dumps(rich, indent=1).encode()
+    yield Sample("rich.json", "scene", text, beside)
+    yield Sample("object.json", "scene", text, beside, broken="good.vdb")
+    yield Sample("picture.json", "scene", text, beside, broken="sky.png")
     yield Sample("options.cfg", "config", options)
+    yield Sample("picture.cfg", "picture",
+                 b"res = 16x16\nsamples = 1\ncolor = 0.8,0.7,0.6\nroughness = 0.3\nshadows = true\n")
     yield Sample("sky.png", "sky", png(8, 4))
     yield Sample("sky.hdr", "sky", radiance())
 
@@ -295,6 +332,10 @@ WRITTEN = [("blosc.vdb", "volume", ["convert", "shape:torus", "-r", "12"]),
            ("voxels.vdb", "volume", ["voxelize", "shape:torus", "-r", "12"]),
            ("lattice.vdb", "onto", ["convert", "shape:cube", "-r", "8"]),
            ("settings.vdb", "like", ["convert", "shape:cube", "-r", "8"]),
+           ("settings.ply", "like", ["convert", "shape:cube", "-r", "8"]),
+           ("settings.glb", "like", ["convert", "shape:cube", "-r", "8"]),
+           ("second.vdb", "pair", ["convert", "shape:torus", "-r", "12"]),
+           ("coarse.vdb", "pair", ["convert", "shape:torus", "-r", "8", "--half"]),
            ("pages.tif", "array", ["convert", "shape:torus", "-r", "12", "--type", "uint16"]),
            ("slice.exr", "array",
             ["convert", "shape:torus", "-r", "12", "--box", "0,0,0,9,9,0"]),
@@ -312,15 +353,27 @@ def written(command, folder):
             yield Sample(name, use, file.read())
 
 
+def shards(command, folder):
+    """Parts of one volume, of which one is broken."""
+    parts = {}
+    for i in (1, 2):
+        name = f"part{i}.vdb"
+        subprocess.run([command, "convert", "shape:torus", "-r", "40", "--tile", "32", "--shard",
+                        f"{i}/2", "-o", name, "--quiet"], cwd=folder, check=True)
+        with open(os.path.join(folder, name), "rb") as file:
+            parts[name] = file.read()
+    yield Sample("part1.vdb", "shard", parts.pop("part1.vdb"), parts)
+
+
 def samples(command, folder):
     """All of them; `folder` is an empty one to work in."""
     good = os.path.join(folder, "good.vdb")
     subprocess.run([command, "convert", "shape:torus", "-r", "12", "-o", good, "--quiet"],
                    check=True)
     with open(good, "rb") as file:
-        known = [*meshes(), *arrays(), *texts(file.read())]
+        known = [*meshes(), *arrays(), *stacks(), *points(), *texts(file.read())]
     painted = next(s for s in known if s.name == "painted.obj")
     for name, data in {"painted.obj": painted.data, **painted.beside}.items():
         with open(os.path.join(folder, name), "wb") as file:
             file.write(data)
-    return known + list(written(command, folder))
+    return known + list(written(command, folder)) + list(shards(command, folder))

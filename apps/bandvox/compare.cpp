@@ -186,6 +186,18 @@ void loadMesh(CommandRun& run, const std::string& input, LoadedInput& loaded,
     }
 }
 
+/// What is wrong with a grid names the input that has it.
+SurfaceOfGrid surfaceOf(CommandRun& run, const std::string& input, const CompareRequest& request,
+                        const openvdb::FloatGrid::ConstPtr& grid) {
+    try {
+        return gridToSurface(grid, {.iso = isoFor(run, request.iso, grid), .cuts = request.cuts},
+                             run.progress());
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::Input) throw;
+        throw Error(error.kind(), input + ": " + error.what());
+    }
+}
+
 void loadGrid(CommandRun& run, const std::string& input, const CompareRequest& request,
               LoadedInput& loaded, ComparedInput& known) {
     {
@@ -198,9 +210,7 @@ void loadGrid(CommandRun& run, const std::string& input, const CompareRequest& r
             formatCount(static_cast<std::int64_t>(loaded.grid->activeVoxelCount()), "active voxel",
                         "active voxels"));
     if (!request.surfaces) return;
-    SurfaceOfGrid made = gridToSurface(
-        loaded.grid, {.iso = isoFor(run, request.iso, loaded.grid), .cuts = request.cuts},
-        run.progress());
+    SurfaceOfGrid made = surfaceOf(run, input, request, loaded.grid);
     known.iso = made.iso;
     known.volume = made.volume;
     loaded.surface = std::move(made.surface);

@@ -110,6 +110,21 @@ void readFrame(DcmItem& item, DicomFrame& frame) {
     }
 }
 
+// How many bytes of pixels a byte of the file can become at most.
+double mostPacked(const DcmXfer& transfer) {
+    if (transfer.getStreamCompression() != ESC_none) return 1100;  // zlib: 258 bytes of 2 bits
+    switch (transfer.getXfer()) {
+        case EXS_RLELossless:
+            return 128;
+        case EXS_JPEGLSLossless:
+        case EXS_JPEGLSLossy:
+            return 65536;  // a row without change is a few bits
+        default:
+            // Of JPEG a block of 8 x 8 pixels of two bytes is one bit at least.
+            return transfer.isEncapsulated() ? 1024 : 1;
+    }
+}
+
 class DcmtkFile final : public DicomFile {
   public:
     explicit DcmtkFile(const std::filesystem::path& path) {
@@ -231,16 +246,13 @@ class DcmtkFile final : public DicomFile {
         const auto length = static_cast<double>(std::filesystem::file_size(path, error));
         const double claimed =
             static_cast<double>(frameBytes()) * static_cast<double>(mInfo.frames.size());
-        // Nothing is packed more closely than all of one value.
-        constexpr double kMostPacked = 65536;
         const bool isPacked = transfer.isEncapsulated();
         if (isPacked &&
             !DcmCodecList::canChangeCoding(transfer.getXfer(), EXS_LittleEndianExplicit)) {
             failDicom(std::string("its pixels are packed by ") + transfer.getXferName() +
                       ", which is not read; unpack it with another program first");
         }
-        const bool isDeflated = transfer.getStreamCompression() != ESC_none;
-        if (!error && claimed > length * (isPacked || isDeflated ? kMostPacked : 1)) {
+        if (!error && claimed > length * mostPacked(transfer)) {
             failDicom("it says that it holds " + std::to_string(mInfo.frames.size()) +
                       " images of " + std::to_string(mInfo.width) + " x " +
                       std::to_string(mInfo.height) + " pixels, more than its " +

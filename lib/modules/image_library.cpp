@@ -2,6 +2,7 @@
 #include "core/image_library.h"
 
 #include "image_modules.h"
+#include "stored_pixels.h"
 
 #include <bandvox/core/error.h>
 
@@ -129,27 +130,32 @@ class OpenImageIo final : public ImageLibrary {
     PixelArray read(const std::filesystem::path& path) const override {
         std::error_code ignored;
         if (!std::filesystem::exists(path, ignored)) fail(path.string(), "there is no such file");
-        return read(path.string(), nullptr);
+        requireSound(path, path.string() + ": ");
+        return read(path.string(), nullptr, lengthOf(path));
     }
 
     PixelArray read(std::span<const std::byte> bytes, const std::string& name) const override {
+        requireSound(bytes, name + ": ");
         OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
-        return read(name, &memory);
+        return read(name, &memory, double(bytes.size()));
     }
 
     CodedPixels readCoded(const std::filesystem::path& path,
                           const PixelGuard& guard) const override {
+        requireSound(path, "cannot be read: ");
         const OIIO::ImageSpec config = unmultiplied();
-        return readCoded(OIIO::ImageInput::open(path.string(), &config).get(), guard);
+        return readCoded(OIIO::ImageInput::open(path.string(), &config).get(), lengthOf(path),
+                         guard);
     }
 
     CodedPixels readCoded(std::span<const std::byte> bytes, const std::string& name,
                           const PixelGuard& guard) const override {
+        requireSound(bytes, "cannot be read: ");
         OIIO::ImageSpec config = unmultiplied();
         OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
         OIIO::Filesystem::IOProxy* proxy = &reader;
         config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-        return readCoded(OIIO::ImageInput::open(name, &config).get(), guard);
+        return readCoded(OIIO::ImageInput::open(name, &config).get(), double(bytes.size()), guard);
     }
 
     WriteFailure writePng(std::ostream& stream, const PngRows& image) const override {
@@ -180,7 +186,7 @@ class OpenImageIo final : public ImageLibrary {
         return config;
     }
 
-    static CodedPixels readCoded(OIIO::ImageInput* input, const PixelGuard& guard) {
+    static CodedPixels readCoded(OIIO::ImageInput* input, double length, const PixelGuard& guard) {
         if (!input) throw Error(ErrorKind::Input, "cannot be read: " + OIIO::geterror());
         const OIIO::ImageSpec& spec = input->spec();
         if (spec.depth > 1 || spec.deep || spec.nchannels < 1 || spec.width < 1 ||
@@ -190,39 +196,63 @@ class OpenImageIo final : public ImageLibrary {
                             " x " + std::to_string(spec.depth) + " texels of " +
                             std::to_string(spec.nchannels) + " channels; expected a flat picture");
         }
+        if (const std::string why = excess(*input, length); !why.empty()) {
+            throw Error(ErrorKind::Input, why);
+        }
         guard(spec.width, spec.height, 2.0 * static_cast<double>(spec.image_bytes(true)));
         CodedPixels pixels{spec.width,
                            spec.height,
                            spec.nchannels >= 3 ? 3 : 1,
                            spec.format.is_floating_point(),
                            {}};
-        pixels.values.resize(static_cast<std::size_t>(spec.width) * spec.height * pixels.channels);
-        if (!input->read_image(0, 0, 0, pixels.channels, OIIO::TypeDesc::UINT16,
-                               pixels.values.data())) {
+        if (!readPixels(*input, spec, 0, 0, pixels.channels, OIIO::TypeDesc::UINT16,
+                        pixels.values)) {
             throw Error(ErrorKind::Input, "cannot be read: " + input->geterror());
         }
         return pixels;
+    }
+
+    // Says what is wrong if a file of so many bytes cannot hold what it claims.
+    static std::string excess(const OIIO::ImageInput& input, double length) {
+        const OIIO::ImageSpec& spec = input.spec();
+        if (static_cast<double>(spec.image_bytes(true)) <= length * mostPacked(input, spec)) {
+            return {};
+        }
+        std::string why = "claims " + std::to_string(spec.width) + " x ";
+        why += std::to_string(spec.height) + " pixels of ";
+        why += std::to_string(spec.nchannels) + " channels; expected what its ";
+        return why + std::to_string(static_cast<long long>(length)) + " bytes can hold";
+    }
+
+    template <typename File>
+    static void requireSound(const File& file, const std::string& before) {
+        try {
+            requireSoundImage(file);
+        } catch (const Error& error) {
+            throw Error(ErrorKind::Input, before + error.what());
+        }
     }
 
     [[noreturn]] static void fail(const std::string& name, const std::string& why) {
         throw Error(ErrorKind::Input, name + ": " + why);
     }
 
-    static PixelArray read(const std::string& name, OIIO::Filesystem::IOProxy* proxy) {
+    static PixelArray read(const std::string& name, OIIO::Filesystem::IOProxy* proxy,
+                           double length) {
         const auto input = OIIO::ImageInput::open(name, nullptr, proxy);
         if (!input) fail(name, "it is no image that can be read (" + OIIO::geterror() + ")");
         const OIIO::ImageSpec& spec = input->spec();
         const std::int64_t pixels = std::int64_t(spec.width) * spec.height;
-        if (spec.depth > 1 || pixels < 1 || pixels > kMostPixels || spec.nchannels < 1) {
+        if (spec.depth > 1 || spec.deep || pixels < 1 || pixels > kMostPixels ||
+            spec.nchannels < 1) {
             fail(name, "it holds " + std::to_string(spec.width) + " x " +
                            std::to_string(spec.height) + " x " + std::to_string(spec.depth) +
                            " pixels of " + std::to_string(spec.nchannels) +
                            " channels; expected a picture");
         }
+        if (const std::string why = excess(*input, length); !why.empty()) fail(name, "it " + why);
         PixelArray image{spec.width, spec.height, std::min(spec.nchannels, 4), {}};
-        image.values.resize(static_cast<std::size_t>(pixels) * image.channels);
-        if (!input->read_image(0, 0, 0, image.channels, OIIO::TypeDesc::FLOAT,
-                               image.values.data())) {
+        if (!readPixels(*input, spec, 0, 0, image.channels, OIIO::TypeDesc::FLOAT, image.values)) {
             fail(name, "it cannot be read to its end (" + input->geterror() + ")");
         }
         // 8 and 16 bits that say nothing of their colours are sRGB.

@@ -2,6 +2,7 @@
 #include "core/slice_files.h"
 
 #include "image_modules.h"
+#include "stored_pixels.h"
 
 #include <bandvox/core/error.h>
 
@@ -69,6 +70,7 @@ OIIO::ImageSpec asStored() {
 class OpenImageIoSlices final : public SliceFile {
   public:
     OpenImageIoSlices(const std::filesystem::path& path, int threads) {
+        requireSoundImage(path);
         const OIIO::ImageSpec config = asStored();
         mInput = OIIO::ImageInput::open(path.string(), &config);
         if (!mInput) {
@@ -88,15 +90,16 @@ class OpenImageIoSlices final : public SliceFile {
         mInfo.resolution = {mSpec.get_float_attribute("XResolution"),
                             mSpec.get_float_attribute("YResolution")};
         mInfo.pageBytes = bytesOfPage(mSpec);
+        mInfo.mostPacked = mostPacked(*mInput, mSpec);
         mInfo.pages = countPages();
     }
 
     void read(int page, int firstChannel, int channels, std::vector<char>& values) override {
-        values.resize(static_cast<std::size_t>(mInfo.width) * mInfo.height * channels *
-                      mSpec.format.size());
+        // Where a page lies may be its own.
+        OIIO::ImageSpec spec = mSpec;
+        spec.copy_dimensions(mInput->spec_dimensions(page));
         mInput->geterror();
-        if (!mInput->read_image(page, 0, firstChannel, firstChannel + channels, mSpec.format,
-                                values.data()) ||
+        if (!readPixels(*mInput, spec, page, firstChannel, channels, mSpec.format, values) ||
             mInput->has_error()) {
             // Of strips that are cut off there may only be a word, and one for each.
             const std::string why = mInput->geterror();

@@ -113,11 +113,14 @@ class BrokenFiles : public testing::Test {
         return {name, std::move(content)};
     }
 
-    /// Expects that a file of that content is refused, or gives a result.
-    void expectAnswer(const std::string& name, const std::string& content) {
+    /// Expects that a file of that content is refused, or gives a result: of convert, or of what
+    /// else is asked for.
+    void expectAnswer(const std::string& name, const std::string& content,
+                      std::vector<std::string> arguments = {}) {
         writeText(mFolder / name, content);
-        const RunResult result = runBandvox({"convert", name, "-o", "out.vdb", "-r", "8", "-q"},
-                                            {.folder = mFolder.path()});
+        if (arguments.empty()) arguments = {"convert", name, "-r", "8"};
+        arguments.insert(arguments.end(), {"-o", "out.vdb", "-q"});
+        const RunResult result = runBandvox(arguments, {.folder = mFolder.path()});
         EXPECT_TRUE(result.status == 0 || result.status == 3 || result.status == 4)
             << result.status << ": " << result.err;
         EXPECT_EQ(countLines(result.err, "bandvox: error: "), result.status == 0 ? 0 : 1)
@@ -128,7 +131,8 @@ class BrokenFiles : public testing::Test {
 #ifndef BANDVOX_SANITIZED
         EXPECT_LT(result.peakBytes, 1'000'000'000);
 #endif
-        std::vector<std::string> expected{name};
+        std::vector<std::string> expected = mWhole;
+        expected.push_back(name);
         if (result.status == 0) expected.emplace_back("out.vdb");
         std::sort(expected.begin(), expected.end());
         EXPECT_EQ(mFolder.contents(), expected);
@@ -148,6 +152,7 @@ class BrokenFiles : public testing::Test {
     }
 
     TemporaryFolder mFolder;
+    std::vector<std::string> mWhole;  ///< other files in it
 };
 
 TEST_F(BrokenFiles, Meshes) {
@@ -171,6 +176,31 @@ TEST_F(BrokenFiles, Arrays) {
                    made("pages.tif", {"--type", "uint16"})});
 }
 
+TEST_F(BrokenFiles, Points) {
+    std::string ply = "ply\nformat binary_little_endian 1.0\nelement vertex 3\n";
+    for (const char* name : {"x", "y", "z", "radius"}) {
+        ply += std::string("property float ") + name + "\n";
+    }
+    ply += "end_header\n";
+    constexpr std::array<float, 12> kBalls{0, 0, 0, 1, 1.5, 0, 0, 0.5, 0, 1.5, 0, 0.25};
+    ply.append(reinterpret_cast<const char*>(kBalls.data()), sizeof kBalls);
+    expectAnswers({{"balls.csv", "x,y,z,radius\n0,0,0,1\n1.5,0,0,0.5\n0,1.5,0,0.25\n"},
+                   {"balls.xyz", "0 0 0 1\n1.5 0 0 0.5\n# far\n0 1.5 0 0.25\n"},
+                   {"balls.ply", ply}});
+}
+
+TEST_F(BrokenFiles, OneOfTwo) {
+    const Sample whole = made("whole.vdb"), broken = made("broken.vdb", {"--half"});
+    writeText(mFolder / whole.name, whole.content);
+    mWhole = {whole.name};
+    Dice dice(2);
+    for (const auto& way : kWays) {
+        const std::string content = way(broken.content, dice);
+        expectAnswer(broken.name, content, {"merge", whole.name, broken.name});
+        expectAnswer(broken.name, content, {"merge", broken.name, whole.name, "--resample"});
+    }
+}
+
 TEST_F(BrokenFiles, ContentOfAnotherFormat) {
     for (const char* name : {"a.obj", "a.ply", "a.stl", "a.off", "a.gltf", "a.glb", "a.dae",
                              "a.fbx", "a.vdb", "a.npy", "a.nrrd", "a.mha", "a.tif", "a.dcm"}) {
@@ -180,11 +210,12 @@ TEST_F(BrokenFiles, ContentOfAnotherFormat) {
     }
 }
 
-TEST_F(BrokenFiles, TextureBeforeTheFirstMaterial) {
+TEST_F(BrokenFiles, StatementBeforeTheFirstMaterial) {
     // The importer would put it into a material that is not there.
     const std::string obj = "mtllib a.mtl\n" + cubeObj();
     for (const std::string& start :
-         {std::string("map_Kd a.png\n"), std::string("# red\nbump a.png\nnewmtl red\n"),
+         {std::string("map_Kd a.png\n"), std::string("aniso 0.5\n"),
+          std::string("# red\nbump a.png\nnewmtl red\n"),
           std::string("newmtl\0", 7).substr(1) + "\rdisp a.png\n", std::string("a\0norm b", 8)}) {
         SCOPED_TRACE(start);
         writeText(mFolder / "a.mtl", start);

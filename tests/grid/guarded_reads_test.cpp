@@ -241,6 +241,21 @@ TEST(GuardedReads, RefuseChunksThatSayTheyAreLonger) {
     }
 }
 
+TEST(GuardedReads, RefuseTilesThatAreNeitherActiveNorNot) {
+    const auto grid = openvdb::FloatGrid::create(0.0F);
+    grid->tree().root().addTile(Coord(4096, 0, 0), 0.625F, true);
+    for (const std::uint32_t compression : kCompressions) {
+        std::string bytes = bytesOf({grid}, compression);
+        const std::size_t place = bytes.find(std::string("\0\0\x20\x3f\1", 5));
+        ASSERT_NE(place, std::string::npos);
+        EXPECT_EQ(messageOf(bytes), "");
+        for (const char state : {'\2', '\20', '\xff'}) {
+            bytes[place + 4] = state;
+            EXPECT_NE(messageOf(bytes).find("damaged"), std::string::npos) << messageOf(bytes);
+        }
+    }
+}
+
 TEST(GuardedReads, RefuseTextThatIsLongerThanTheFile) {
     std::istream stream(nullptr);
     const auto isSound = [&stream](std::uint32_t first, std::uint32_t second) {

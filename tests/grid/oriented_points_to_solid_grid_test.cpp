@@ -143,6 +143,14 @@ TEST(OrientedPointsToSolidGrid, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(volumes[2], volumes[0]);
 }
 
+TEST(OrientedPointsToSolidGrid, TakesAPlaceOnceHoweverOftenItIsThere) {
+    const Samples once = ball(500, 0);
+    Samples often = once;
+    for (int i = 0; i < 50000; ++i) often.add(once.points[7], once.normals[7]);
+    const double expected = volumeOf(orientedPointsToSolidGrid(once, 0.1));
+    EXPECT_NEAR(volumeOf(orientedPointsToSolidGrid(often, 0.1)), expected, 0.1 * expected);
+}
+
 TEST(OrientedPointsToSolidGrid, RefusesWhatIsNoSurface) {
     const auto kindOf = [](const Samples& samples, double voxel = 0.1,
                            Progress& progress = silentProgress()) {

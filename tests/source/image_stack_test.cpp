@@ -292,7 +292,9 @@ TEST_F(ImageStack, RefusesDamagedAndHugeFiles) {
                   {"huge.tif", "100000 x 100000", "more than its"});
     expectRefused(write("long.tif", HandMadeTiff{2000000, 1, 8, false, some}.bytes()),
                   {"long.tif", "2e+06"});
-    expectRefused(write("short.tif", HandMadeTiff{300, 300, 8, false, some}.bytes()),
+    expectRefused(write("large.tif", HandMadeTiff{300, 300, 8, false, some}.bytes()),
+                  {"large.tif", "300 x 300", "more than its"});
+    expectRefused(write("short.tif", HandMadeTiff{60, 60, 8, false, some}.bytes()),
                   {"short.tif", "to its end"});
     expectRefused(write("no.png", "no image"), {"no.png", "no image that can be read"});
     expectRefused(write("empty.exr", ""), {"empty.exr"});
@@ -308,6 +310,48 @@ TEST_F(ImageStack, RefusesDamagedAndHugeFiles) {
     // Every cut is noticed, wherever it is.
     for (std::size_t length = 100; length < bytes.size(); length += 631) {
         expectRefused(write("cut.tif", bytes.substr(0, length)), {"cut.tif"});
+    }
+}
+
+TEST_F(ImageStack, RefusesPngsWhosePartsAreNotThere) {
+    writeTestImage<std::uint8_t>(mFolder / "whole.png", {.width = 60, .height = 60}, 1,
+                                 [](int x, int y, int, int) { return x * y; });
+    std::ifstream whole(mFolder / "whole.png", std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(whole)), {});
+    // Behind the signature and the header there is room for another part.
+    const std::string signature = bytes.substr(0, 33), rest = bytes.substr(33);
+    std::string huge(
+        "\x7f\xff\xff\xff"
+        "juNk");
+    huge += std::string(9, '\0');
+    expectRefused(write("huge.png", signature + huge + rest), {"huge.png", "juNk", "2147483647"});
+    // A name says nothing.
+    expectRefused(write("huge.tif", signature + huge + rest), {"huge.tif", "juNk"});
+    EXPECT_NO_THROW(openArray(write("more.png", bytes + "what follows")));
+    for (std::size_t length = 8; length < bytes.size(); length += 7) {
+        expectRefused(write("cut.png", bytes.substr(0, length)), {"cut.png", "cut short"});
+    }
+}
+
+TEST_F(ImageStack, TakesWhatIsPackedClosely) {
+    constexpr int kSide = 1500;
+    const auto zero = [](int, int, int, int) { return 0; };
+    for (const std::string name : {"none.tif", "zip.tif", "lzw.tif", "packbits.tif", "a.png"}) {
+        for (const bool isWide : {false, true}) {
+            SCOPED_TRACE(name + (isWide ? ", 16 bits" : ", 8 bits"));
+            TestImage image{.width = kSide, .height = kSide};
+            if (name.ends_with(".tif")) {
+                image.texts = {{"compression", name.substr(0, name.size() - 4)}};
+            }
+            if (isWide) {
+                image.type = OIIO::TypeDesc::UINT16;
+                writeTestImage<std::uint16_t>(mFolder / name, image, 1, zero);
+            } else {
+                writeTestImage<std::uint8_t>(mFolder / name, image, 1, zero);
+            }
+            EXPECT_EQ(readAll(*openArray(mFolder / name)),
+                      std::vector<float>(std::size_t(kSide) * kSide, 0));
+        }
     }
 }
 

@@ -16,6 +16,7 @@ struct SliceFileInfo {
     std::string type;                    ///< "uint8", "uint16", "float16", ...
     int bits = 0;                        ///< of a value, before it was widened to `type`
     double pageBytes = 0;                ///< memory that reading a page takes
+    double mostPacked = 1;               ///< bytes of a page that a byte of the file can become
     std::string description;             ///< free text; empty if there is none
     std::array<double, 2> resolution{};  ///< pixels per unit along x and y; 0: unknown
 };

@@ -167,6 +167,12 @@ bool ReadGuard::isSoundInTree(std::span<const char> bytes) {
     switch (mStage) {
         case Stage::Between:
         case Stage::Mask:
+            // Beside nodes a byte says whether a tile of the root is active, or the value of one
+            // that is true or false.
+            if (mStage == Stage::Between && bytes.size() == 1 && !isOldFormat() &&
+                static_cast<unsigned char>(bytes[0]) > 1) {
+                return false;
+            }
             if (isMask(bytes.size())) {
                 followMask(bytes);
             } else if (mStage == Stage::Mask) {

@@ -13,8 +13,10 @@
 #include <CGAL/property_map.h>
 
 #include <Eigen/IterativeLinearSolvers>
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -94,12 +96,27 @@ class InsertionVisitor {
     mutable std::int64_t mInserted = 0;
 };
 
+/// The points, each place once, with the sum of its normals. CGAL's search trees get a level deeper
+/// with each point of a place, and end the process when it has many.
 std::vector<Oriented> asOriented(const OrientedPoints& points) {
+    const std::size_t count = points.points.size();
+    std::vector<std::uint32_t> order(count), first(count);
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::pair(points.points[a], a) < std::pair(points.points[b], b);
+    });
+    std::vector<Vec3d> normals(count, Vec3d(0));
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t point = order[i];
+        const bool isNew = i == 0 || points.points[order[i - 1]] != points.points[point];
+        first[point] = isNew ? point : first[order[i - 1]];
+        normals[first[point]] += Vec3d(points.normals[point]);
+    }
     std::vector<Oriented> oriented;
-    oriented.reserve(points.points.size());
-    for (std::size_t i = 0; i < points.points.size(); ++i) {
-        const Vec3d& p = points.points[i];
-        const openvdb::Vec3f& n = points.normals[i];
+    oriented.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (first[i] != i) continue;
+        const Vec3d &p = points.points[i], &n = normals[i];
         oriented.emplace_back(Kernel::Point_3(p.x(), p.y(), p.z()),
                               Kernel::Vector_3(n.x(), n.y(), n.z()));
     }

@@ -5,6 +5,7 @@
 #include <assimp/DefaultIOSystem.h>
 
 #include <filesystem>
+#include <set>
 #include <string>
 
 namespace bandvox {
@@ -24,10 +25,16 @@ class CheckedFiles final : public Assimp::DefaultIOSystem {
   private:
     std::string mMesh;
     bool mIsObj;
+    std::set<std::string> mChecked;  // materials
 };
 
-/// Checks the materials of an .obj file: the importer puts a texture that stands before the first
-/// material into one that is not there. Throws Error(ErrorKind::Input).
+/// Checks the materials of an .obj file: the importer puts a texture, or an anisotropy, that stands
+/// before the first material into one that is not there. Throws Error(ErrorKind::Input).
 void checkMaterials(const FileContents& file);
+
+/// Has the importer read them in a copy of the process, for all that the check does not know.
+/// Throws Error(ErrorKind::Input) if it does not survive that; what it refuses it will refuse
+/// again.
+void tryMaterials(const FileContents& file);
 
 }  // namespace bandvox

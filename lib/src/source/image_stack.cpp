@@ -26,9 +26,6 @@ namespace fs = std::filesystem;
 // Files of at most this many slices are open, and in memory, at a time.
 constexpr std::size_t kTogether = 8;
 
-// No image is packed more closely than this.
-constexpr double kMostPackedImage = 65536;
-
 std::unique_ptr<SliceFile> openSlices(const fs::path& path, int threads = 1) {
     std::error_code ignored;
     if (!fs::exists(path, ignored)) failArray(path, "there is no such file");
@@ -77,7 +74,7 @@ void requirePlausible(const fs::path& path, const SliceFileInfo& info) {
     arraySize(path, {double(info.width), double(info.height), double(info.pages)});
     std::error_code error;
     const auto length = static_cast<double>(fs::file_size(path, error));
-    if (error || info.pageBytes <= length * kMostPackedImage) return;
+    if (error || info.pageBytes <= length * info.mostPacked) return;
     failArray(path, "it says that it holds " + kindInWords(info) + ", more than its " +
                         std::to_string(static_cast<long long>(length)) + " bytes can be");
 }
