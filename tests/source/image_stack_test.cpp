@@ -313,6 +313,15 @@ TEST_F(ImageStack, RefusesDamagedAndHugeFiles) {
     }
 }
 
+TEST_F(ImageStack, RefusesPagesThatGoRound) {
+    const HandMadeTiff tiff{4, 4, 8, false, std::string(16, '\7')};
+    std::string bytes = tiff.bytes();
+    EXPECT_NO_THROW(openArray(write("once.tif", bytes)));
+    // The last four bytes are where the next directory is; bytes 4 to 8 where the first is.
+    bytes.replace(bytes.size() - 4, 4, bytes.substr(4, 4));
+    expectRefused(write("round.tif", bytes), {"round.tif", "page 0", "comes again"});
+}
+
 TEST_F(ImageStack, RefusesPngsWhosePartsAreNotThere) {
     writeTestImage<std::uint8_t>(mFolder / "whole.png", {.width = 60, .height = 60}, 1,
                                  [](int x, int y, int, int) { return x * y; });

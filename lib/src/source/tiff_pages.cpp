@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <unordered_set>
 
 // "TIFF, Revision 6.0", Adobe 1992, section 2; with offsets of 8 bytes, "The BigTIFF File Format".
 namespace bandvox {
@@ -60,7 +61,12 @@ std::optional<int> countTiffPages(const std::filesystem::path& path) {
 
     auto place = bytes.number(isBig ? 8 : 4, offsetBytes);
     int pages = 0;
+    std::unordered_set<std::uint64_t> places;
     while (place && *place != 0 && pages < kMostDirectories) {
+        if (!places.insert(*place).second) {
+            failArray(path, "it is damaged: behind page " + std::to_string(pages - 1) +
+                                " an earlier one comes again");
+        }
         const auto entries = bytes.number(*place, countBytes);
         constexpr std::uint64_t kMostEntries = 1 << 16;
         place = entries && *entries <= kMostEntries
