@@ -142,6 +142,12 @@ template <int kLanes>
 
 }  // namespace
 
+NodeWeights nodeWeights(const SpreadingKernel& kernel, double local) {
+    constexpr int kLanes = SpreadingKernel::kPaddedWidth;
+    const auto axis = axisWeights<kLanes, 1>(kernel, local);
+    return {axis.first, axis.of[0]};
+}
+
 BANDVOX_FOR_EACH_INSTRUCTION_SET
 double sumValue(const BrickNodes& brick, const SpreadingKernel& kernel,
                 const openvdb::Vec3d& local) {

@@ -5,6 +5,8 @@
 
 #include <openvdb/Types.h>
 
+#include <array>
+
 namespace bandvox {
 
 /// The coefficients of a brick, [nodes][nodes][pitch], whose first node is the first under the
@@ -19,6 +21,15 @@ struct BrickNodes {
 inline int firstNode(const SpreadingKernel& kernel) {
     return -(kernel.width() / 2);
 }
+
+/// The nodes around a place along one axis.
+struct NodeWeights {
+    int first;                                                 ///< in the brick's coefficients
+    std::array<float, SpreadingKernel::kPaddedWidth> weights;  ///< as many as the kernel is wide
+};
+
+/// Those at a place relative to a brick's first voxel.
+NodeWeights nodeWeights(const SpreadingKernel& kernel, double local);
 
 // The sums f~(x) = Σ c_l ψ(l - x) and their derivatives, at a place relative to the brick's first
 // voxel.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "resample/axis_sums.h"
 #include "resample/lattice_map.h"
 #include "spectral/fft.h"
 
@@ -43,7 +44,7 @@ class BlockFilter {
   public:
     struct Scratch {
         FftBuffer cube;
-        std::vector<float> first, second;
+        AxisSumScratch sums;
     };
 
     virtual ~BlockFilter() = default;

@@ -1,8 +1,5 @@
 #include "resample/gaussian_block_filter.h"
 
-#include "core/instruction_sets.h"
-#include "core/lanes.h"
-
 #include <fftw3.h>
 
 #include <algorithm>
@@ -46,27 +43,6 @@ double imagesOf(double variance, const LatticeFilter& filter) {
         worst = std::max(worst, there * std::exp(-2 * pi * pi * variance * (1 - k) * (1 - k)));
     }
     return worst;
-}
-
-// Sums `taps` rows that are `stride` apart, weighted.
-BANDVOX_FOR_EACH_INSTRUCTION_SET
-void sumRows(const float* rows, std::size_t stride, const float* weights, int taps, int length,
-             float* sums) {
-    constexpr int kLanes = 16;
-    int i = 0;
-    for (; i + kLanes <= length; i += kLanes) {
-        Lanes<kLanes> sum{}, row;
-        for (int t = 0; t < taps; ++t) {
-            loadLanes<kLanes>(rows + t * stride + i, row);
-            sum += weights[t] * row;
-        }
-        storeLanes<kLanes>(sum, sums + i);
-    }
-    for (; i < length; ++i) {
-        float sum = 0;
-        for (int t = 0; t < taps; ++t) sum += weights[t] * rows[t * stride + i];
-        sums[i] = sum;
-    }
 }
 
 }  // namespace
@@ -120,17 +96,17 @@ SourceCube GaussianBlockFilter::sourceCube(const openvdb::Coord& block) const {
 
 BlockFilter::Scratch GaussianBlockFilter::allocate() const {
     const std::size_t nodes = std::size_t(mostNodes(0)) * mostNodes(1) * mostNodes(2);
-    Scratch scratch{FftBuffer(fftwf_alloc_real(nodes)), {}, {}};
+    Scratch scratch{FftBuffer(fftwf_alloc_real(nodes)), {}};
     if (!scratch.cube) throw std::bad_alloc();
-    scratch.first.resize(std::size_t(mBlockSide) * mostNodes(1) * mostNodes(2));
-    scratch.second.resize(std::size_t(mBlockSide) * mBlockSide * mostNodes(2));
+    scratch.sums.resize(mBlockSide, std::size_t(mostNodes(1)) * mostNodes(2), mostNodes(2));
     return scratch;
 }
 
-GaussianBlockFilter::AxisTaps GaussianBlockFilter::tapsAlong(int axis, const openvdb::Coord& block,
-                                                             int cubeOrigin) const {
+AxisTaps GaussianBlockFilter::tapsAlong(int axis, const openvdb::Coord& block,
+                                        int cubeOrigin) const {
     const int taps = 2 * mHalfWidth[axis] + 1;
     AxisTaps along;
+    along.taps = taps;
     std::vector<double> weights(taps);
     for (int i = 0; i < mBlockSide; ++i) {
         openvdb::Vec3d voxel(0.0);
@@ -155,37 +131,12 @@ GaussianBlockFilter::AxisTaps GaussianBlockFilter::tapsAlong(int axis, const ope
 void GaussianBlockFilter::apply(const openvdb::Coord& block, Scratch& scratch,
                                 std::span<float> values) const {
     const SourceCube cube = sourceCube(block);
-    const std::size_t row = cube.zStride, plane = row * cube.yCount;
-    const std::size_t side = mBlockSide;
-
-    // Along x, then y: sums of planes, then of rows.
-    const AxisTaps x = tapsAlong(0, block, cube.box.min()[0]);
-    for (std::size_t i = 0; i < side; ++i) {
-        const int taps = 2 * mHalfWidth[0] + 1;
-        sumRows(scratch.cube.get() + x.first[i] * plane, plane, &x.weights[i * taps], taps,
-                static_cast<int>(plane), &scratch.first[i * plane]);
-    }
-    const AxisTaps y = tapsAlong(1, block, cube.box.min()[1]);
-    for (std::size_t i = 0; i < side; ++i) {
-        const int taps = 2 * mHalfWidth[1] + 1;
-        for (std::size_t j = 0; j < side; ++j) {
-            sumRows(&scratch.first[i * plane + y.first[j] * row], row, &y.weights[j * taps], taps,
-                    static_cast<int>(row), &scratch.second[(i * side + j) * row]);
-        }
-    }
-
-    // Along z.
-    const AxisTaps z = tapsAlong(2, block, cube.box.min()[2]);
-    const int taps = 2 * mHalfWidth[2] + 1;
-    for (std::size_t i = 0; i < side * side; ++i) {
-        for (std::size_t k = 0; k < side; ++k) {
-            const float* from = &scratch.second[i * row + z.first[k]];
-            const float* weights = &z.weights[k * taps];
-            float sum = 0;
-            for (int t = 0; t < taps; ++t) sum += weights[t] * from[t];
-            values[i * side + k] = sum;
-        }
-    }
+    const openvdb::Coord& low = cube.box.min();
+    const std::size_t row = cube.zStride;
+    sumAlongAxes(
+        {scratch.cube.get(), row * cube.yCount, row},
+        {tapsAlong(0, block, low[0]), tapsAlong(1, block, low[1]), tapsAlong(2, block, low[2])},
+        scratch.sums, values);
 }
 
 }  // namespace bandvox

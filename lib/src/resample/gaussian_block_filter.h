@@ -24,12 +24,6 @@ class GaussianBlockFilter final : public BlockFilter {
                std::span<float> values) const override;
 
   private:
-    // The weights of the nodes around each of a block's places along an axis.
-    struct AxisTaps {
-        std::vector<int> first;      // relative to the cube
-        std::vector<float> weights;  // [place][mTaps]
-    };
-
     AxisTaps tapsAlong(int axis, const openvdb::Coord& block, int cubeOrigin) const;
     int mostNodes(int axis) const;
 

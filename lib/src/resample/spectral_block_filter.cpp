@@ -67,6 +67,7 @@ InterpolationDesign design(const LatticeMap& map, const LatticeFilter& filter) {
 SpectralBlockFilter::SpectralBlockFilter(const LatticeMap& map, const LatticeFilter& filter)
     : BlockFilter(map, filter.reach(map)),
       mIsAligned(map.isAligned()),
+      mIsDiagonal(map.isDiagonal()),
       mDesign(design(map, filter)),
       mFft(RealFft3::get(chooseSide(
           map, mReach += mIsAligned ? 0 : mDesign.reach() + mDesign.kernel.width() / 2 + 1))) {
@@ -96,7 +97,37 @@ int SpectralBlockFilter::chooseSide(const LatticeMap& map, int reach) {
 }
 
 double SpectralBlockFilter::scratchBytes() const {
-    return double(sizeof(float)) * mFft.bufferSize();
+    double floats = static_cast<double>(mFft.bufferSize());
+    if (mIsDiagonal && !mIsAligned) {
+        floats += double(mBlockSide) * (mFft.yCount() + mBlockSide) * mFft.zStride();
+    }
+    return double(sizeof(float)) * floats;
+}
+
+BlockFilter::Scratch SpectralBlockFilter::allocate() const {
+    Scratch scratch{mFft.allocate(), {}};
+    if (mIsDiagonal && !mIsAligned) {
+        const auto row = static_cast<std::size_t>(mFft.zStride());
+        scratch.sums.resize(mBlockSide, row * mFft.yCount(), row);
+    }
+    return scratch;
+}
+
+AxisTaps SpectralBlockFilter::tapsAlong(int axis, const openvdb::Coord& block,
+                                        int cubeOrigin) const {
+    const SpreadingKernel& kernel = mDesign.kernel;
+    AxisTaps along;
+    along.taps = kernel.width();
+    for (int i = 0; i < mBlockSide; ++i) {
+        openvdb::Vec3d voxel(0.0);
+        voxel[axis] = double(block[axis]) * mBlockSide + i;
+        const double place = mMap.toSource(voxel)[axis] - cubeOrigin;
+        const NodeWeights nodes = nodeWeights(kernel, place + firstNode(kernel));
+        along.first.push_back(nodes.first);
+        along.weights.insert(along.weights.end(), nodes.weights.begin(),
+                             nodes.weights.begin() + along.taps);
+    }
+    return along;
 }
 
 SourceCube SpectralBlockFilter::sourceCube(const openvdb::Coord& block) const {
@@ -150,6 +181,14 @@ void SpectralBlockFilter::apply(const openvdb::Coord& block, Scratch& scratch,
     mFft.forward(cube);
     multiply(cube);
     mFft.inverse(cube);
+    if (mIsDiagonal && !mIsAligned) {
+        const openvdb::Coord low = sourceBox(block).min();
+        const auto row = static_cast<std::size_t>(mFft.zStride());
+        return sumAlongAxes(
+            {cube, row * mFft.yCount(), row},
+            {tapsAlong(0, block, low[0]), tapsAlong(1, block, low[1]), tapsAlong(2, block, low[2])},
+            scratch.sums, values);
+    }
     const BrickNodes nodes{cube, mFft.yCount(), mFft.zStride()};
     const openvdb::Vec3d first = block.asVec3d() * mBlockSide;
     const openvdb::Vec3d origin = sourceBox(block).min().asVec3d();

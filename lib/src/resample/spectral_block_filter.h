@@ -6,7 +6,8 @@
 namespace bandvox {
 
 /// Filters by two transforms of a cube around each block, whatever the filter and the lattices, and
-/// reads the result between its nodes where it has to.
+/// reads the result between its nodes where it has to, along one axis after the other if axes lie
+/// on axes.
 class SpectralBlockFilter final : public BlockFilter {
   public:
     /// Throws as makeBlockFilter.
@@ -14,7 +15,7 @@ class SpectralBlockFilter final : public BlockFilter {
 
     double scratchBytes() const override;
     SourceCube sourceCube(const openvdb::Coord& block) const override;
-    Scratch allocate() const override { return {mFft.allocate(), {}, {}}; }
+    Scratch allocate() const override;
     void apply(const openvdb::Coord& block, Scratch& scratch,
                std::span<float> values) const override;
 
@@ -22,8 +23,10 @@ class SpectralBlockFilter final : public BlockFilter {
     static int chooseSide(const LatticeMap& map, int reach);
     void tabulate(const LatticeFilter& filter);
     void multiply(float* cube) const;
+    AxisTaps tapsAlong(int axis, const openvdb::Coord& block, int cubeOrigin) const;
 
-    bool mIsAligned;  // target voxels are source voxels: nothing is to be read between them
+    bool mIsAligned;   // target voxels are source voxels: nothing is to be read between them
+    bool mIsDiagonal;  // between them it is read along one axis after the other
     InterpolationDesign mDesign;
     const RealFft3& mFft;
     std::vector<float> mTransfer;  // [side][side][side/2 + 1]
