@@ -14,6 +14,12 @@ namespace {
 constexpr int kFinestLevel = 12;
 constexpr double kStiffness = 1e-2;
 
+/// Below this, in parts of the range, the shape of what is added does not matter any more.
+constexpr double kSmall = 1e-7;
+
+/// So few points are worth the smoothest shape even of what is smaller than that.
+constexpr std::size_t kFewPoints = 3000;
+
 void checkFitOptions(const FitSurfaceOptions& options) {
     const auto fail = [](const std::string& name, double found, const std::string& expected) {
         std::string message = name + " of a fit is ";
@@ -60,41 +66,49 @@ class Fitting {
     SurfaceFit run();
 
   private:
-    int finestOfData() const;
-    void fitLevel(int level);
-    void interpolate(int level);
+    int levelOfCount() const;
+    void approximate(int level);
+    void takeValues(int level);
+    void takeLacking(int level);
+    void takeRest(int allowed);
     void mend(int level);
+    NetSolver makeSolver(const NetPoints& points) const;
+    void interpolate(const NetPoints& points, const Columns& wanted);
     void solveColumns(const NetSolver& solver, const NetPoints& points, const Columns& targets,
                       double reduction);
-    void measure(const NetPoints& points);
+    void measure(const NetPoints& points, const Columns& nets, const Columns& wanted);
     void enterLevel(const NetShape& shape);
-    void keepLevel(int level);
+    void keepSum(int level);
+    void keepAlone(int level, const NetShape& shape, const Columns& nets);
     BsplineSurface surfaceOf(const NetShape& shape, const Columns& nets) const;
     bool isReached() const { return mLargest <= mOptions.tolerance; }
+    /// What smooth levels may leave to bumps.
+    double smallEnough() const {
+        return mUnit.points.size() <= kFewPoints ? mOptions.tolerance
+                                                 : std::max(kSmall, mOptions.tolerance);
+    }
 
     UnitPoints mUnit;
     const FitSurfaceOptions& mOptions;
     Progress& mProgress;
     NetShape mShape;    // of the nets
-    Columns mNets;      // control points of all levels so far
+    Columns mNets;      // control points: of the sum of all levels, or of one
     Columns mLacking;   // of each point's values
     double mLargest = 1, mRms = 1;
     SurfaceFit mFit;
 };
 
-/// Where the tension and the points' distances are resolved.
-int Fitting::finestOfData() const {
-    const auto count = static_cast<double>(mUnit.points.size());
-    constexpr double kFew = 3000;
-    const double cells = count <= kFew ? 9 * count : std::max(9 * kFew, 2.25 * count);
+/// The coarsest level with enough control points to take all values. A coarser net is a smoother one.
+int Fitting::levelOfCount() const {
+    constexpr double kCellsForPoint = 1.6;
     int level = 1;
-    while (level < 10 && static_cast<double>(shapeOfLevel(level, mUnit.side, false).inner[0]) *
-                                 shapeOfLevel(level, mUnit.side, false).inner[1] <
-                             cells) {
+    const auto cells = [&] {
+        const NetShape shape = shapeOfLevel(level, mUnit.side, false);
+        return static_cast<double>(shape.inner[0]) * shape.inner[1];
+    };
+    while (level < 10 && cells() < kCellsForPoint * static_cast<double>(mUnit.points.size())) {
         ++level;
     }
-    constexpr double kMany = 1e5;
-    if (count <= kMany) level = std::max(level, levelOfPoints(mUnit));
     return level;
 }
 
@@ -128,18 +142,20 @@ void Fitting::enterLevel(const NetShape& shape) {
     mShape = shape;
 }
 
-void Fitting::measure(const NetPoints& points) {
+/// What the nets lack of `wanted` at the points.
+void Fitting::measure(const NetPoints& points, const Columns& nets, const Columns& wanted) {
     mLargest = 0;
     double squares = 0;
-    for (std::size_t c = 0; c < mNets.size(); ++c) {
-        points.evaluate(mNets[c], mLacking[c]);
+    std::vector<double> found(points.size());
+    for (std::size_t c = 0; c < nets.size(); ++c) {
+        points.evaluate(nets[c], found);
         for (std::size_t i = 0; i < points.size(); ++i) {
-            mLacking[c][i] = mUnit.values[c][i] - mLacking[c][i];
+            mLacking[c][i] = wanted[c][i] - found[i];
             mLargest = std::max(mLargest, std::abs(mLacking[c][i]));
         }
         squares += dotProduct(mLacking[c], mLacking[c]);
     }
-    mRms = std::sqrt(squares / static_cast<double>(points.size() * mNets.size()));
+    mRms = std::sqrt(squares / static_cast<double>(points.size() * nets.size()));
 }
 
 void Fitting::solveColumns(const NetSolver& solver, const NetPoints& points,
@@ -155,34 +171,52 @@ void Fitting::solveColumns(const NetSolver& solver, const NetPoints& points,
     }
 }
 
-void Fitting::fitLevel(int level) {
+NetSolver Fitting::makeSolver(const NetPoints& points) const {
+    return NetSolver(makeNormalStencil(points, mUnit.side, mFit.tension, kStiffness));
+}
+
+/// The smoothest surface near the values.
+void Fitting::approximate(int level) {
+    enterLevel(shapeOfLevel(level, mUnit.side, true));
     const NetPoints points(mUnit.points, mShape);
-    const NetSolver solver(makeNormalStencil(points, mUnit.side, mFit.tension, kStiffness));
-    solveColumns(solver, points, mUnit.values, 1e-3);
-    measure(points);
-    keepLevel(level);
+    solveColumns(makeSolver(points), points, mUnit.values, 1e-3);
+    measure(points, mNets, mUnit.values);
+    keepSum(level);
 }
 
 /// The smoothest surface with the values, by the method of multipliers: what a solution lacks is
 /// added to what the next one is to take.
-void Fitting::interpolate(int level) {
-    const NetPoints points(mUnit.points, mShape);
-    const NetSolver solver(makeNormalStencil(points, mUnit.side, mFit.tension, kStiffness));
+void Fitting::interpolate(const NetPoints& points, const Columns& wanted) {
+    const NetSolver solver = makeSolver(points);
     constexpr int kRounds = 40;
-    Columns targets = mUnit.values;
-    double before = 2;
+    Columns targets = wanted;
+    double before = mLargest;
     for (int round = 0; round < kRounds; ++round) {
         mProgress.throwIfInterrupted();
         solveColumns(solver, points, targets, 1e-4);
-        measure(points);
+        measure(points, mNets, wanted);
         constexpr double kSlow = 0.9;
-        if (isReached() || mLargest > kSlow * before) break;
+        if (mLargest <= smallEnough() || (round > 0 && mLargest > kSlow * before)) break;
         before = mLargest;
         for (std::size_t c = 0; c < mNets.size(); ++c) {
             for (std::size_t i = 0; i < points.size(); ++i) targets[c][i] += mLacking[c][i];
         }
     }
-    keepLevel(level);
+}
+
+/// The level that is to take all values.
+void Fitting::takeValues(int level) {
+    enterLevel(shapeOfLevel(level, mUnit.side, true));
+    interpolate(NetPoints(mUnit.points, mShape), mUnit.values);
+    keepSum(level);
+}
+
+/// A level that takes what is lacking still.
+void Fitting::takeLacking(int level) {
+    mShape = shapeOfLevel(level, mUnit.side, true);
+    mNets.assign(mUnit.values.size(), std::vector<double>(mShape.count()));
+    interpolate(NetPoints(mUnit.points, mShape), Columns(mLacking));
+    keepAlone(level, mShape, mNets);
 }
 
 /// Adds bumps narrower than the points are apart.
@@ -190,28 +224,21 @@ void Fitting::mend(int level) {
     const NetShape shape = shapeOfLevel(level, mUnit.side, false);
     const ResidualMender mender(mUnit.points, shape);
     Columns bumps;
-    for (auto& lacking : mLacking) {
+    for (const auto& lacking : mLacking) {
         auto& net = bumps.emplace_back(shape.count());
         constexpr int kSteps = 400;
-        mender.addTo(net, mender.multipliers(lacking, 0.3 * mOptions.tolerance, kSteps, mProgress));
+        mender.addTo(net, mender.multipliers(lacking, 0.7 * mOptions.tolerance, kSteps, mProgress));
     }
-    const NetPoints points(mUnit.points, shape);
-    double squares = 0;
-    mLargest = 0;
-    for (std::size_t c = 0; c < bumps.size(); ++c) {
-        std::vector<double> added(points.size());
-        points.evaluate(bumps[c], added);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            mLacking[c][i] -= added[i];
-            mLargest = std::max(mLargest, std::abs(mLacking[c][i]));
-        }
-        squares += dotProduct(mLacking[c], mLacking[c]);
+    measure(NetPoints(mUnit.points, shape), bumps, Columns(mLacking));
+    keepAlone(level, shape, bumps);
+}
+
+void Fitting::keepAlone(int level, const NetShape& shape, const Columns& nets) {
+    BsplineSurface surface = surfaceOf(shape, nets);
+    for (std::size_t c = 0; c < nets.size(); ++c) {
+        for (double& control : surface.control(static_cast<int>(c))) control *= mUnit.range[c];
     }
-    mRms = std::sqrt(squares / static_cast<double>(points.size() * bumps.size()));
-    for (std::size_t c = 0; c < bumps.size(); ++c) {
-        for (double& control : bumps[c]) control *= mUnit.range[c];
-    }
-    mFit.levels.push_back(surfaceOf(shape, bumps));
+    mFit.levels.push_back(std::move(surface));
     mFit.report.push_back({level, shape.inner, mLargest, mRms});
 }
 
@@ -231,8 +258,8 @@ BsplineSurface Fitting::surfaceOf(const NetShape& shape, const Columns& nets) co
     return surface;
 }
 
-/// What this level has that those before do not.
-void Fitting::keepLevel(int level) {
+/// What the nets, which are the sum of all levels, have that the levels before do not.
+void Fitting::keepSum(int level) {
     BsplineSurface surface = surfaceOf(mShape, mNets);
     for (std::size_t c = 0; c < mNets.size(); ++c) {
         for (double& control : surface.control(static_cast<int>(c))) {
@@ -251,28 +278,32 @@ void Fitting::keepLevel(int level) {
     mFit.report.push_back({level, mShape.inner, mLargest, mRms});
 }
 
+/// Levels for what is lacking: smooth ones as long as points are nearer to each other than cells are
+/// wide, then bumps.
+void Fitting::takeRest(int allowed) {
+    constexpr double kMany = 1e5;
+    const auto count = static_cast<double>(mUnit.points.size());
+    int level = mFit.report.back().level + 1;
+    if (mLargest > smallEnough() && count <= kMany) {
+        const int apart = std::min(levelOfPoints(mUnit), allowed);
+        for (; level <= apart && mLargest > smallEnough(); ++level) takeLacking(level);
+    }
+    level = std::max(level, static_cast<int>(std::ceil(std::log2(4 * std::sqrt(count)))));
+    for (; !isReached() && level <= allowed; ++level) mend(level);
+}
+
 SurfaceFit Fitting::run() {
     mFit.points = mUnit.points.size();
     mFit.tension = mOptions.tension ? *mOptions.tension : chooseTension(mUnit, mProgress);
     const int allowed = mOptions.maxLevel.value_or(kFinestLevel);
-    const int finest = std::min(finestOfData(), allowed);
-    // Below this the shape of what is added does not matter any more.
-    constexpr double kSmall = 1e-7;
-    for (int level = 1; level <= finest; ++level) {
+    const int full = std::min(levelOfCount(), allowed);
+    for (int level = 1; level < full; ++level) {
         mProgress.throwIfInterrupted();
-        enterLevel(shapeOfLevel(level, mUnit.side, true));
-        if (level == finest) {
-            interpolate(level);
-        } else {
-            fitLevel(level);
-            if (mLargest <= std::max(kSmall, mOptions.tolerance)) break;
-        }
+        approximate(level);
+        if (mLargest <= std::max(kSmall, mOptions.tolerance)) break;
     }
-    int level = mFit.report.back().level;
-    const auto apart = static_cast<int>(
-        std::ceil(std::log2(4 * std::sqrt(static_cast<double>(mUnit.points.size())))));
-    level = std::max(level + 1, apart);
-    for (; !isReached() && level <= allowed; ++level) mend(level);
+    if (mFit.levels.empty() || mLargest > std::max(kSmall, mOptions.tolerance)) takeValues(full);
+    takeRest(allowed);
     return std::move(mFit);
 }
 

@@ -90,39 +90,44 @@ std::vector<std::size_t> countProducts(const SortedPoints& points, const NetShap
 
 }  // namespace
 
-std::size_t ResidualMender::productCount(const SortedPoints& points, const NetShape& shape) {
-    return countProducts(points, shape, CellRows(points, shape)).back();
-}
-
 ResidualMender::ResidualMender(const SortedPoints& points, const NetShape& shape)
-    : mNetPoints(points, shape), mDiagonal(points.size()) {
+    : mNetPoints(points, shape), mProducts(multiplyNeighbors(points, mNetPoints)) {}
+
+SparseRows ResidualMender::multiplyNeighbors(const SortedPoints& points, const NetPoints& net) {
+    const NetShape& shape = net.shape();
     const CellRows rows(points, shape);
-    mStart = countProducts(points, shape, rows);
-    mNeighbor.resize(mStart.back());
-    mProduct.resize(mStart.back());
+    SparseRows products;
+    products.start = countProducts(points, shape, rows);
+    products.neighbor.resize(products.start.back());
+    products.entry.resize(products.start.back());
     forPieces(points.size(), kPointsInPiece, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const CellOfPoint cell = cellOf(points, shape, i);
-            const NetPoints::Place own = mNetPoints.place(i);
-            std::size_t at = mStart[i];
+            const NetPoints::Place own = net.place(i);
+            std::size_t at = products.start[i];
+            std::uint32_t* const first = products.neighbor.data() + at;
             rows.forNeighbors(cell, [&](std::size_t other) {
-                const CellOfPoint its = cellOf(points, shape, other);
-                const NetPoints::Place place = mNetPoints.place(other);
-                mNeighbor[at] = static_cast<std::uint32_t>(other);
-                mProduct[at++] = overlap(own.x, place.x, its.x - cell.x) *
-                                 overlap(own.y, place.y, its.y - cell.y);
+                products.neighbor[at++] = static_cast<std::uint32_t>(other);
             });
-            mDiagonal[i] = overlap(own.x, own.x, 0) * overlap(own.y, own.y, 0);
+            std::sort(first, products.neighbor.data() + at);
+            for (std::size_t k = products.start[i]; k < at; ++k) {
+                const std::size_t other = products.neighbor[k];
+                const CellOfPoint its = cellOf(points, shape, other);
+                const NetPoints::Place place = net.place(other);
+                products.entry[k] = overlap(own.x, place.x, its.x - cell.x) *
+                                    overlap(own.y, place.y, its.y - cell.y);
+            }
         }
     });
+    return products;
 }
 
 void ResidualMender::multiply(std::span<const double> x, std::span<double> y) const {
     forPieces(x.size(), kPointsInPiece, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             double sum = 0;
-            for (std::size_t k = mStart[i]; k < mStart[i + 1]; ++k) {
-                sum += mProduct[k] * x[mNeighbor[k]];
+            for (std::size_t k = mProducts.start[i]; k < mProducts.start[i + 1]; ++k) {
+                sum += mProducts.entry[k] * x[mProducts.neighbor[k]];
             }
             y[i] = sum;
         }
@@ -132,18 +137,16 @@ void ResidualMender::multiply(std::span<const double> x, std::span<double> y) co
 std::vector<double> ResidualMender::multipliers(std::span<const double> lacking, double enough,
                                                 int steps, Progress& progress) const {
     const std::size_t count = lacking.size();
+    const IncompleteFactor factor(mProducts);
     std::vector<double> solution(count), residual(lacking.begin(), lacking.end()), better(count),
-        direction(count), image(count);
-    const auto improve = [&] {
-        for (std::size_t i = 0; i < count; ++i) better[i] = residual[i] / mDiagonal[i];
-    };
+        image(count);
     const auto largest = [&] {
         double most = 0;
         for (const double r : residual) most = std::max(most, std::abs(r));
         return most;
     };
-    improve();
-    direction = better;
+    factor.solve(residual, better);
+    std::vector<double> direction = better;
     double measure = dotProduct(residual, better);
     for (int step = 0; step < steps && largest() > enough; ++step) {
         progress.throwIfInterrupted();
@@ -151,15 +154,20 @@ std::vector<double> ResidualMender::multipliers(std::span<const double> lacking,
         const double curvature = dotProduct(direction, image);
         if (!(curvature > 0)) break;
         const double length = measure / curvature;
-        for (std::size_t i = 0; i < count; ++i) {
-            solution[i] += length * direction[i];
-            residual[i] -= length * image[i];
-        }
-        improve();
+        forPieces(count, kPointsInPiece, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                solution[i] += length * direction[i];
+                residual[i] -= length * image[i];
+            }
+        });
+        factor.solve(residual, better);
         const double next = dotProduct(residual, better);
-        for (std::size_t i = 0; i < count; ++i) {
-            direction[i] = better[i] + next / measure * direction[i];
-        }
+        const double kept = next / measure;
+        forPieces(count, kPointsInPiece, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                direction[i] = better[i] + kept * direction[i];
+            }
+        });
         measure = next;
     }
     return solution;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scatter/incomplete_factor.h"
 #include "scatter/net_points.h"
 
 #include <bandvox/core/progress.h>
@@ -17,9 +18,6 @@ class ResidualMender {
     /// Keeps a reference to the points.
     ResidualMender(const SortedPoints& points, const NetShape& shape);
 
-    /// How many products of neighbours are kept; 12 bytes each.
-    static std::size_t productCount(const SortedPoints& points, const NetShape& shape);
-
     /// The multipliers of the points' splines whose sum takes the values `lacking`, up to `enough`
     /// at any point, if so many steps do. Throws Error(ErrorKind::Interrupted).
     std::vector<double> multipliers(std::span<const double> lacking, double enough, int steps,
@@ -31,13 +29,11 @@ class ResidualMender {
     }
 
   private:
+    static SparseRows multiplyNeighbors(const SortedPoints& points, const NetPoints& net);
     void multiply(std::span<const double> x, std::span<double> y) const;
 
     NetPoints mNetPoints;
-    std::vector<std::size_t> mStart;       // of each point's products
-    std::vector<std::uint32_t> mNeighbor;  // whose they are
-    std::vector<double> mProduct;          // of the two points' splines
-    std::vector<double> mDiagonal;
+    SparseRows mProducts;  // of the points' splines
 };
 
 }  // namespace bandvox

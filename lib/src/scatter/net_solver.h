@@ -16,7 +16,7 @@ namespace bandvox {
 class NetSolver {
   public:
     /// The largest net that is factored, control points.
-    static constexpr std::size_t kLargestFactored = 24000;
+    static constexpr std::size_t kLargestFactored = 28000;
 
     explicit NetSolver(NetStencil stencil);
 
