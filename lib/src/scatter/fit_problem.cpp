@@ -88,7 +88,7 @@ NetStencil makeNormalStencil(const NetPoints& points, std::array<double, 2> side
 int levelOfPoints(const UnitPoints& unit) {
     // The distance from each point to the next one is looked for in the cells around it.
     const std::size_t count = unit.points.size();
-    constexpr int kDeepest = 9;
+    constexpr int kDeepest = 7;
     int level = 1;
     while (level < kDeepest && std::pow(4, level) < static_cast<double>(count)) ++level;
     const NetShape shape = shapeOfLevel(level, unit.side, false);

@@ -18,7 +18,7 @@ constexpr double kStiffness = 1e-2;
 constexpr double kSmall = 1e-7;
 
 /// So few points are worth the smoothest shape even of what is smaller than that.
-constexpr std::size_t kFewPoints = 3000;
+constexpr std::size_t kFewPoints = 300;
 
 void checkFitOptions(const FitSurfaceOptions& options) {
     const auto fail = [](const std::string& name, double found, const std::string& expected) {
@@ -72,7 +72,9 @@ class Fitting {
     void takeLacking(int level);
     void takeRest(int allowed);
     void mend(int level);
-    NetSolver makeSolver(const NetPoints& points) const;
+    void smooth(int level);
+    double noiseLeft() const;
+    NetSolver makeSolver(const NetPoints& points, double stiffness) const;
     void interpolate(const NetPoints& points, const Columns& wanted);
     void solveColumns(const NetSolver& solver, const NetPoints& points, const Columns& targets,
                       double reduction);
@@ -171,15 +173,15 @@ void Fitting::solveColumns(const NetSolver& solver, const NetPoints& points,
     }
 }
 
-NetSolver Fitting::makeSolver(const NetPoints& points) const {
-    return NetSolver(makeNormalStencil(points, mUnit.side, mFit.tension, kStiffness));
+NetSolver Fitting::makeSolver(const NetPoints& points, double stiffness) const {
+    return NetSolver(makeNormalStencil(points, mUnit.side, mFit.tension, stiffness));
 }
 
 /// The smoothest surface near the values.
 void Fitting::approximate(int level) {
     enterLevel(shapeOfLevel(level, mUnit.side, true));
     const NetPoints points(mUnit.points, mShape);
-    solveColumns(makeSolver(points), points, mUnit.values, 1e-3);
+    solveColumns(makeSolver(points, kStiffness), points, mUnit.values, 1e-3);
     measure(points, mNets, mUnit.values);
     keepSum(level);
 }
@@ -187,7 +189,7 @@ void Fitting::approximate(int level) {
 /// The smoothest surface with the values, by the method of multipliers: what a solution lacks is
 /// added to what the next one is to take.
 void Fitting::interpolate(const NetPoints& points, const Columns& wanted) {
-    const NetSolver solver = makeSolver(points);
+    const NetSolver solver = makeSolver(points, kStiffness);
     constexpr int kRounds = 40;
     Columns targets = wanted;
     double before = mLargest;
@@ -231,6 +233,41 @@ void Fitting::mend(int level) {
     }
     measure(NetPoints(mUnit.points, shape), bumps, Columns(mLacking));
     keepAlone(level, shape, bumps);
+}
+
+/// The mean square of what is lacking, in parts of that which the noise makes expect.
+double Fitting::noiseLeft() const {
+    double sum = 0;
+    for (std::size_t c = 0; c < mLacking.size(); ++c) {
+        const double scale = mUnit.range[c] / mOptions.noise;
+        for (std::size_t i = 0; i < mLacking[c].size(); ++i) {
+            const double parts = scale * mLacking[c][i];
+            sum += mUnit.points.weight[i] * parts * parts;
+        }
+    }
+    return sum / static_cast<double>(mLacking.size() * mUnit.points.size());
+}
+
+/// The smoothest surface that differs by as much as the noise: the stiffness for that is bracketed
+/// and halved on a logarithmic scale. V. A. Morozov's discrepancy principle.
+void Fitting::smooth(int level) {
+    enterLevel(shapeOfLevel(level, mUnit.side, true));
+    const NetPoints points(mUnit.points, mShape);
+    const auto tryStiffness = [&](double logarithm) {
+        mProgress.throwIfInterrupted();
+        solveColumns(makeSolver(points, std::pow(10, logarithm)), points, mUnit.values, 1e-5);
+        measure(points, mNets, mUnit.values);
+        return noiseLeft() < 1;
+    };
+    double low = -3;
+    double high = 9;
+    constexpr double kFineEnough = 0.02;
+    while (high - low > kFineEnough) {
+        const double middle = (low + high) / 2;
+        (tryStiffness(middle) ? low : high) = middle;
+    }
+    tryStiffness(low);
+    keepSum(level);
 }
 
 void Fitting::keepAlone(int level, const NetShape& shape, const Columns& nets) {
@@ -297,6 +334,11 @@ SurfaceFit Fitting::run() {
     mFit.tension = mOptions.tension ? *mOptions.tension : chooseTension(mUnit, mProgress);
     const int allowed = mOptions.maxLevel.value_or(kFinestLevel);
     const int full = std::min(levelOfCount(), allowed);
+    if (mOptions.noise > 0) {
+        for (int level = 1; level < full; ++level) approximate(level);
+        smooth(full);
+        return std::move(mFit);
+    }
     for (int level = 1; level < full; ++level) {
         mProgress.throwIfInterrupted();
         approximate(level);
