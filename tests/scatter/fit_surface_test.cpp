@@ -87,7 +87,7 @@ TEST(FitSurface, TakesRandomSamplesOfABump) {
 
 TEST(FitSurface, ErrsLessThanOthersOnFrankesFunctions) {
     // The least root mean square of SciPy's Clough-Tocher scheme and a thin plate, as
-    // benchmarks/scattered_data measures them.
+    // benchmarks/scattered_data_against_scipy measures them.
     constexpr std::array<std::array<double, 6>, 3> kOthers{
         {{9.47e-3, 3.799e-3, 8.05e-4, 2.743e-4, 2.22e-3, 1.247e-3},
          {4.246e-2, 1.342e-2, 1.385e-2, 5.612e-3, 2.318e-2, 4.622e-3},
