@@ -11,7 +11,7 @@
 namespace bandvox {
 namespace {
 
-constexpr int kFinestLevel = 12;
+constexpr int kFinestLevel = 13;
 constexpr double kStiffness = 1e-2;
 
 /// Below this, in parts of the range, the shape of what is added does not matter any more.
@@ -325,7 +325,7 @@ void Fitting::takeRest(int allowed) {
         const int apart = std::min(levelOfPoints(mUnit), allowed);
         for (; level <= apart && mLargest > smallEnough(); ++level) takeLacking(level);
     }
-    level = std::max(level, static_cast<int>(std::ceil(std::log2(4 * std::sqrt(count)))));
+    level = std::max(level, static_cast<int>(std::ceil(std::log2(2.5 * std::sqrt(count)))));
     for (; !isReached() && level <= allowed; ++level) mend(level);
 }
 

@@ -40,10 +40,18 @@ void IncompleteFactor::factorRow(std::size_t row, std::size_t first) {
         mEntry[at] = value / mEntry[itsDiagonal];
     }
     mDiagonal[row] = static_cast<std::uint32_t>(at - start);
-    double pivot = mEntry[at];
-    const double least = 1e-10 * pivot;
+    const double whole = mEntry[at];
+    double pivot = whole;
     for (std::size_t own = begin; own < at; ++own) pivot -= mEntry[own] * mEntry[own];
-    mEntry[at] = std::sqrt(std::max(pivot, least));
+    // What is left out can make more of a row's part in the others than there is. Such a row then
+    // stands for itself, which keeps the factor positive and bounded.
+    constexpr double kLeastPart = 1e-9;
+    if (pivot <= kLeastPart * whole) {
+        std::fill(mEntry.begin() + static_cast<std::ptrdiff_t>(begin),
+                  mEntry.begin() + static_cast<std::ptrdiff_t>(at), 0.0);
+        pivot = whole;
+    }
+    mEntry[at] = std::sqrt(pivot);
 }
 
 void IncompleteFactor::solve(std::span<const double> x, std::span<double> y) const {

@@ -16,7 +16,7 @@ std::size_t stripOf(double u) {
                                         .cell);
 }
 
-/// The upper triangle of a symmetric matrix of the 16 control points of a cell, a row at a time.
+/// Control points that count in a cell.
 constexpr std::size_t kControls = 16;
 
 }  // namespace
@@ -143,7 +143,7 @@ void NetPoints::addNormal(NetStencil& stencil) const {
                 for (std::size_t k = 0; k < kControls; ++k) weights[k] = at.x[k / 4] * at.y[k % 4];
                 for (std::size_t k = 0; k < kControls; ++k) {
                     const double factor = mPoints.weight[i] * weights[k];
-                    for (std::size_t l = 0; l < kControls; ++l) {
+                    for (std::size_t l = k & ~std::size_t(3); l < kControls; ++l) {
                         own[k * kControls + l] += factor * weights[l];
                     }
                 }
@@ -155,7 +155,10 @@ void NetPoints::addNormal(NetStencil& stencil) const {
                 for (std::size_t k = 0; k < kControls; ++k) {
                     double* const to = stencil.entries((row + k / 4) * mRow + column + k % 4);
                     for (std::size_t l = 0; l < kControls; ++l) {
-                        to[(3 + l / 4 - k / 4) * 7 + 3 + l % 4 - k % 4] += own[k * kControls + l];
+                        // Below the blocks on the diagonal stands what is above them.
+                        const double entry = l / 4 < k / 4 ? own[l * kControls + k]
+                                                           : own[k * kControls + l];
+                        to[(3 + l / 4 - k / 4) * 7 + 3 + l % 4 - k % 4] += entry;
                     }
                 }
                 std::fill_n(own, kControls * kControls, 0.0);
