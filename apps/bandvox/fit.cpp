@@ -30,7 +30,8 @@ const CommandTable& fitTable() {
         CommandTable made{
             "fit",
             "Fit a smooth surface to values at scattered places.",
-            "Reads a table of places and values, x y and a value or several in each line, and makes "
+            "Reads a table of places and values, x y and a value or several in each line, and "
+            "makes "
             "of them the smoothest sum of B-spline surfaces that has these values. It is twice "
             "continuously differentiable, and written as Bézier patches, samples, a mesh, a "
             "picture, or the solid under it.",
@@ -41,7 +42,8 @@ const CommandTable& fitTable() {
                 {"rectangle", 0, "X0,Y0,X1,Y1", "of the points",
                  "What the surface covers; all points have to be in it.", "Points"},
                 {"tolerance", 0, "T", "1e-12",
-                 "How far the surface may be off at a point, in parts of the values' range, 0 to 1. "
+                 "How far the surface may be off at a point, in parts of the values' range, 0 to "
+                 "1. "
                  "More gives a coarser net. If it is given and not reached, the status is 4.",
                  "Surface"},
                 {"smooth", 0, "NOISE", "",
@@ -54,7 +56,8 @@ const CommandTable& fitTable() {
                  "Sum up levels A to B only, as counted from 1: 1..3 leaves detail away.",
                  "Surface"},
                 {"tension", 0, "T", "the most likely",
-                 "The surface is stiff within 1/T, and like a membrane farther off, in units of the "
+                 "The surface is stiff within 1/T, and like a membrane farther off, in units of "
+                 "the "
                  "root of the rectangle's area; 0.01 to 10000.",
                  "Surface"},
             },
@@ -136,12 +139,11 @@ FitRequest parseFit(const CommandLine& line) {
 
 void sayFit(CommandRun& run, const SurfaceFit& fit) {
     const FitLevel& last = fit.report.back();
-    run.say("fitted   " + formatCount(static_cast<std::int64_t>(fit.levels.size()), "level",
-                                      "levels") +
-            ", the finest of " + std::to_string(last.cells[0]) + " x " +
-            std::to_string(last.cells[1]) + " cells; at the points off by " +
-            formatNumber(last.largest, 2) + " of the range at most, tension " +
-            formatNumber(fit.tension, 3));
+    run.say(
+        "fitted   " + formatCount(static_cast<std::int64_t>(fit.levels.size()), "level", "levels") +
+        ", the finest of " + std::to_string(last.cells[0]) + " x " + std::to_string(last.cells[1]) +
+        " cells; at the points off by " + formatNumber(last.largest, 2) +
+        " of the range at most, tension " + formatNumber(fit.tension, 3));
     nlohmann::json levels = nlohmann::json::array();
     for (const FitLevel& level : fit.report) {
         run.sayMore("         level " + std::to_string(level.level) + ": " +

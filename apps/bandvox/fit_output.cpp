@@ -52,8 +52,7 @@ std::array<int, 2> samplesOf(const BsplineSurface& surface, int longer) {
 
 void writeSolid(CommandRun& run, AtomicFile& output, const FitOutput& request,
                 const FittedSurface& fitted) {
-    const double base =
-        request.base ? *request.base : heightBelow(fitted.surface, kStandardMargin);
+    const double base = request.base ? *request.base : heightBelow(fitted.surface, kStandardMargin);
     const std::string name = std::filesystem::path(fitted.input).filename().string();
     const auto source = makeHeightFieldSource(name, fitted.surface, base);
     run.say("solid    between the surface and z = " + formatNumber(base) + ", volume " +
@@ -66,8 +65,8 @@ void writeSolid(CommandRun& run, AtomicFile& output, const FitOutput& request,
         setDensityMetadata(*density.grid, density.metadata);
     }
     sayDensity(run, density,
-               formatNumber(density.metadata.closureError, 2) +
-                   " measured by closure, tolerance " + formatNumber(density.metadata.tolerance, 2));
+               formatNumber(density.metadata.closureError, 2) + " measured by closure, tolerance " +
+                   formatNumber(density.metadata.tolerance, 2));
     run.warn(density.warnings, ErrorKind::Result);
     run.writeOutput(output,
                     [&](AtomicFile& file) { writeVdb(file, {density.grid}, request.write); });
@@ -123,10 +122,9 @@ FitOutput readFitOutput(const CommandLine& line) {
                            request.kind == FitOutput::Kind::Samples;
     if (!isSampled) refuseOptions(line, {"samples"}, "with this kind of output");
     if (request.kind != FitOutput::Kind::Density) {
-        refuseOptions(line,
-                      {"resolution", "voxel-size", "base", "cutoff", "order", "half",
-                       "compression"},
-                      "without a .vdb output");
+        refuseOptions(
+            line, {"resolution", "voxel-size", "base", "cutoff", "order", "half", "compression"},
+            "without a .vdb output");
         return request;
     }
     readSize(line, request.density.resolution, request.density.voxelSize);
@@ -150,8 +148,8 @@ void writeFit(CommandRun& run, AtomicFile& output, const FitOutput& request,
             case FitOutput::Kind::Samples:
                 return writeSamples(file, surface, samples, run.progress());
             case FitOutput::Kind::Picture:
-                return writeImage(file, heightFieldImage(surface, samples, 0, red), {.color = red >= 0},
-                                  run.progress());
+                return writeImage(file, heightFieldImage(surface, samples, 0, red),
+                                  {.color = red >= 0}, run.progress());
             default:
                 return writeMesh(file, heightFieldMesh(surface, samples, 0, red), run.progress());
         }

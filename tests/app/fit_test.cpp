@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <sstream>
@@ -22,7 +23,9 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-double heightAt(double x, double y) { return 1 + 0.3 * std::sin(3 * x) * std::cos(2 * y); }
+double heightAt(double x, double y) {
+    return 1 + 0.3 * std::sin(3 * x) * std::cos(2 * y);
+}
 
 std::string tableOfHeights() {
     std::ostringstream text;
@@ -97,9 +100,9 @@ TEST_F(Fit, WritesSamplesThatAreTheFunction) {
 }
 
 TEST_F(Fit, WritesPatchesMeshesAndPictures) {
-    ASSERT_EQ(fit({"heights.csv", "-o", "surface.bpt", "--max-level", "3", "--tolerance", "0.1"})
-                  .status,
-              0);
+    ASSERT_EQ(
+        fit({"heights.csv", "-o", "surface.bpt", "--max-level", "3", "--tolerance", "0.1"}).status,
+        0);
     std::istringstream patches(read("surface.bpt"));
     int count = 0;
     patches >> count;
@@ -120,8 +123,8 @@ TEST_F(Fit, WritesPatchesMeshesAndPictures) {
 }
 
 TEST_F(Fit, WritesTheSolidUnderTheSurface) {
-    const RunResult result = fit({"heights.csv", "-o", "solid.vdb", "-r", "40", "--base", "0",
-                                  "--rectangle", "0,0,1,1"});
+    const RunResult result = fit(
+        {"heights.csv", "-o", "solid.vdb", "-r", "40", "--base", "0", "--rectangle", "0,0,1,1"});
     ASSERT_EQ(result.status, 0) << result.err;
     openvdb::initialize();
     const auto grids = readVdb(*sFolder / "solid.vdb");
@@ -190,6 +193,25 @@ TEST_F(Fit, ReadsArraysOfNumpy) {
     const RunResult result = fit({"four.npy", "-o", "four.bpt"});
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_NE(result.err.find("4 points"), std::string::npos) << result.err;
+}
+
+TEST_F(Fit, RunsWhatItsPageShows) {
+    const std::string page = readText(std::filesystem::path(BANDVOX_SOURCE_DIR) / "docs/fit.md");
+    const std::string fence = "```sh runnable\n";
+    const std::size_t begin = page.find(fence);
+    ASSERT_NE(begin, std::string::npos);
+    const std::size_t start = begin + fence.size();
+    const std::string block = page.substr(start, page.find("\n```", start) + 1 - start);
+    const std::string path =
+        "PATH=" + std::filesystem::path(BANDVOX_EXECUTABLE).parent_path().string() + ":$PATH\n";
+    const TemporaryFolder folder;
+    const RunResult result =
+        runProgram({"/bin/sh", "-e", "-c", path + block}, {.folder = folder.path()});
+    EXPECT_EQ(result.status, 0) << result.err;
+    for (const char* name :
+         {"surface.bpt", "surface.npy", "surface.ply", "surface.exr", "solid.vdb", "simple.bpt"}) {
+        EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+    }
 }
 
 TEST_F(Fit, IsTheSameForAnyNumberOfThreads) {

@@ -147,8 +147,8 @@ TEST(BsplineSurface, CurvatureOfAParaboloid) {
     EXPECT_DOUBLE_EQ(jet.normal()[2], 1);
     // A sphere's are the same everywhere: z = -sqrt(1 - x² - y²) at x = 0.6.
     const double z = 0.8;
-    const SurfaceJet sphere{.value = -z, .dx = 0.6 / z, .dy = 0, .dxx = 1 / (z * z * z), .dxy = 0,
-                            .dyy = 1 / z};
+    const SurfaceJet sphere{
+        .value = -z, .dx = 0.6 / z, .dy = 0, .dxx = 1 / (z * z * z), .dxy = 0, .dyy = 1 / z};
     EXPECT_NEAR(sphere.gaussianCurvature(), 1, 1e-14);
     EXPECT_NEAR(sphere.meanCurvature(), 1, 1e-14);
     EXPECT_NEAR(sphere.normal()[0], -0.6, 1e-14);

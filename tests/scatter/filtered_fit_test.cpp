@@ -67,8 +67,8 @@ TEST(FilteredFit, ComesNearerLevelByLevel) {
     // What the report says is so of the sum.
     double largest = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        largest = std::max(largest, std::abs(surface.value(points.x[i], points.y[i]) -
-                                             points.values[i]));
+        largest =
+            std::max(largest, std::abs(surface.value(points.x[i], points.y[i]) - points.values[i]));
     }
     const auto [low, high] = std::minmax_element(points.values.begin(), points.values.end());
     EXPECT_NEAR(largest / (*high - *low), fit.report.back().largest, 1e-12);

@@ -46,8 +46,8 @@ double largestResidual(const BsplineSurface& surface, const ScatteredPoints& poi
     double largest = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         for (int c = 0; c < points.columns; ++c) {
-            largest = std::max(largest, std::abs(surface.value(points.x[i], points.y[i], c) -
-                                                 points.value(i, c)));
+            largest = std::max(
+                largest, std::abs(surface.value(points.x[i], points.y[i], c) - points.value(i, c)));
         }
     }
     return largest;
@@ -128,8 +128,8 @@ TEST(FitSurface, TakesManyPoints) {
         for (int j = 0; j < kSide; ++j) {
             const double x = r.x0 + r.width() * i / (kSide - 1);
             const double y = r.y0 + r.height() * j / (kSide - 1);
-            largest = std::max(largest,
-                               std::abs(samples[static_cast<std::size_t>(i * kSide + j)] - f(x, y)));
+            largest = std::max(
+                largest, std::abs(samples[static_cast<std::size_t>(i * kSide + j)] - f(x, y)));
         }
     }
     EXPECT_LE(largest, 2e-6);
@@ -146,8 +146,8 @@ TEST(FitSurface, LevelsAddUpAndGrowFiner) {
         before = fit.report[i].rms;
         EXPECT_EQ(fit.levels[i].cells(), fit.report[i].cells);
         // What the report says of a level is so of the sum up to there.
-        EXPECT_NEAR(largestResidual(fit.sum(0, i), points) / (*high - *low),
-                    fit.report[i].largest, 1e-9 * fit.report[i].largest + 1e-14);
+        EXPECT_NEAR(largestResidual(fit.sum(0, i), points) / (*high - *low), fit.report[i].largest,
+                    1e-9 * fit.report[i].largest + 1e-14);
     }
 }
 

@@ -25,7 +25,8 @@ TEST(HeightFieldSource, IsClosedAndHasItsVolume) {
     const auto heights = surface.sample({kSide, kSide});
     for (int i = 0; i < kSide; ++i) {
         for (int j = 0; j < kSide; ++j) {
-            const double weight = (i % (kSide - 1) == 0 ? 0.5 : 1) * (j % (kSide - 1) == 0 ? 0.5 : 1);
+            const double weight =
+                (i % (kSide - 1) == 0 ? 0.5 : 1) * (j % (kSide - 1) == 0 ? 0.5 : 1);
             volume += weight * (heights[static_cast<std::size_t>(i * kSide + j)] + 0.2);
         }
     }

@@ -15,7 +15,9 @@ namespace bandvox::scatter_test {
 
 using PlaneFunction = std::function<double(double, double)>;
 
-inline double square(double x) { return x * x; }
+inline double square(double x) {
+    return x * x;
+}
 
 /// G. Nielson, "A Method for Interpolating Scattered Data Based Upon a Minimum Norm Network", 1983.
 inline double bump(double x, double y) {
@@ -39,7 +41,8 @@ inline std::vector<PlaneFunction> frankeFunctions() {
             [](double x, double y) {
                 return (1.25 + std::cos(5.4 * y)) / (6 * (1 + square(3 * x - 1)));
             },
-            peak(81.0 / 16), peak(81.0 / 4),
+            peak(81.0 / 16),
+            peak(81.0 / 4),
             [](double x, double y) {
                 return std::sqrt(64 - 81 * (square(x - 0.5) + square(y - 0.5))) / 9 - 0.5;
             }};

@@ -85,8 +85,7 @@ double SurfaceJet::gaussianCurvature() const {
 
 double SurfaceJet::meanCurvature() const {
     const double metric = 1 + dx * dx + dy * dy;
-    const double numerator =
-        (1 + dy * dy) * dxx - 2 * dx * dy * dxy + (1 + dx * dx) * dyy;
+    const double numerator = (1 + dy * dy) * dxx - 2 * dx * dy * dxy + (1 + dx * dx) * dyy;
     return numerator / (2 * metric * std::sqrt(metric));
 }
 
@@ -126,8 +125,7 @@ SurfaceJet BsplineSurface::jet(double x, double y, int column) const {
     const auto [cellX, placeX] = findCell((x - mRectangle.x0) * perX, mCells[0]);
     const auto [cellY, placeY] = findCell((y - mRectangle.y0) * perY, mCells[1]);
     const std::size_t rows = static_cast<std::size_t>(mCells[1]) + 3;
-    const double* const corner = control(column).data() +
-                                 static_cast<std::size_t>(cellX) * rows +
+    const double* const corner = control(column).data() + static_cast<std::size_t>(cellX) * rows +
                                  static_cast<std::size_t>(cellY);
     // along[b][d]: the derivative of order d along x, for the control points b along y.
     std::array<std::array<double, 3>, 4> along{};
@@ -145,8 +143,12 @@ SurfaceJet BsplineSurface::jet(double x, double y, int column) const {
         for (std::size_t b = 0; b < 4; ++b) total += weights[b] * along[b][dx];
         return total;
     };
-    return {sum(0, 0),        sum(1, 0) * perX,          sum(0, 1) * perY, sum(2, 0) * perX * perX,
-            sum(1, 1) * perX * perY, sum(0, 2) * perY * perY};
+    return {sum(0, 0),
+            sum(1, 0) * perX,
+            sum(0, 1) * perY,
+            sum(2, 0) * perX * perX,
+            sum(1, 1) * perX * perY,
+            sum(0, 2) * perY * perY};
 }
 
 std::vector<double> BsplineSurface::sample(const GridSampling& grid) const {
@@ -158,8 +160,7 @@ std::vector<double> BsplineSurface::sample(const GridSampling& grid) const {
                         "; expected 2 x 2 at least, a column that is there, and derivatives of "
                         "order 0 to 3");
     }
-    const SampledBasis x =
-        sampleBasis(grid.nx, mCells[0], grid.dx, mRectangle.width() / mCells[0]);
+    const SampledBasis x = sampleBasis(grid.nx, mCells[0], grid.dx, mRectangle.width() / mCells[0]);
     const SampledBasis y =
         sampleBasis(grid.ny, mCells[1], grid.dy, mRectangle.height() / mCells[1]);
     const std::size_t rows = static_cast<std::size_t>(mCells[1]) + 3;
@@ -168,8 +169,8 @@ std::vector<double> BsplineSurface::sample(const GridSampling& grid) const {
     std::vector<double> samples(static_cast<std::size_t>(grid.nx) * ny);
     parallelFor((grid.nx + kRowsAtOnce - 1) / kRowsAtOnce, [&](std::int64_t task) {
         std::vector<double> line(rows);
-        const auto end = static_cast<std::size_t>(
-            std::min<std::int64_t>(grid.nx, (task + 1) * kRowsAtOnce));
+        const auto end =
+            static_cast<std::size_t>(std::min<std::int64_t>(grid.nx, (task + 1) * kRowsAtOnce));
         for (auto i = static_cast<std::size_t>(task * kRowsAtOnce); i < end; ++i) {
             const double* const first = net + static_cast<std::size_t>(x.cell[i]) * rows;
             const auto& a = x.weight[i];
@@ -221,11 +222,11 @@ BsplineSurface BsplineSurface::refinedTo(std::array<int, 2> cells) const {
         const bool alongX = now[0] < cells[0];
         const bool alongY = now[1] < cells[1];
         if ((!alongX && !alongY) || now[0] > cells[0] || now[1] > cells[1]) {
-            throw Error(ErrorKind::Usage,
-                        "a surface of " + std::to_string(mCells[0]) + " x " +
-                            std::to_string(mCells[1]) + " cells cannot have " +
-                            std::to_string(cells[0]) + " x " + std::to_string(cells[1]) +
-                            "; expected a power of two times as many");
+            throw Error(ErrorKind::Usage, "a surface of " + std::to_string(mCells[0]) + " x " +
+                                              std::to_string(mCells[1]) + " cells cannot have " +
+                                              std::to_string(cells[0]) + " x " +
+                                              std::to_string(cells[1]) +
+                                              "; expected a power of two times as many");
         }
         surface = surface.refined(alongX, alongY);
     }
@@ -235,9 +236,9 @@ BsplineSurface BsplineSurface::refinedTo(std::array<int, 2> cells) const {
 BsplineSurface BsplineSurface::cropped(std::array<int, 2> first, std::array<int, 2> cells) const {
     const double stepX = mRectangle.width() / mCells[0];
     const double stepY = mRectangle.height() / mCells[1];
-    const Rectangle rectangle{
-        mRectangle.x0 + first[0] * stepX, mRectangle.y0 + first[1] * stepY,
-        mRectangle.x0 + (first[0] + cells[0]) * stepX, mRectangle.y0 + (first[1] + cells[1]) * stepY};
+    const Rectangle rectangle{mRectangle.x0 + first[0] * stepX, mRectangle.y0 + first[1] * stepY,
+                              mRectangle.x0 + (first[0] + cells[0]) * stepX,
+                              mRectangle.y0 + (first[1] + cells[1]) * stepY};
     BsplineSurface part(rectangle, cells, mColumns);
     const std::size_t rows = static_cast<std::size_t>(mCells[1]) + 3;
     const std::size_t partRows = static_cast<std::size_t>(cells[1]) + 3;
@@ -271,13 +272,12 @@ std::array<double, 16> BsplineSurface::bezierOrdinates(int cellX, int cellY, int
                                      (c[1] + 2 * c[2]) / 3, (c[1] + 4 * c[2] + c[3]) / 6};
     };
     const std::size_t rows = static_cast<std::size_t>(mCells[1]) + 3;
-    const double* const corner = control(column).data() +
-                                 static_cast<std::size_t>(cellX) * rows +
+    const double* const corner = control(column).data() + static_cast<std::size_t>(cellX) * rows +
                                  static_cast<std::size_t>(cellY);
     std::array<double, 16> patch{};
     for (std::size_t b = 0; b < 4; ++b) {
-        const auto along = ordinates(
-            {corner[b], corner[rows + b], corner[2 * rows + b], corner[3 * rows + b]});
+        const auto along =
+            ordinates({corner[b], corner[rows + b], corner[2 * rows + b], corner[3 * rows + b]});
         for (std::size_t a = 0; a < 4; ++a) patch[a * 4 + b] = along[a];
     }
     for (std::size_t a = 0; a < 4; ++a) {

@@ -53,8 +53,9 @@ double unlikeliness(const UnitPoints& few, const NetPoints& points, double tensi
         }
         factor.solve(right, solution);
         points.evaluate(solution, one);
-        std::copy(one.begin(), one.end(),
-                  smoothed.begin() + static_cast<std::ptrdiff_t>(i * static_cast<std::int64_t>(count)));
+        std::copy(
+            one.begin(), one.end(),
+            smoothed.begin() + static_cast<std::ptrdiff_t>(i * static_cast<std::int64_t>(count)));
     });
     // The energy of the smoothest surface through values v is v^T (S^-1 - 1) v.
     const DenseSymmetric energy = inverseLessOne(smoothed, count);
@@ -73,8 +74,8 @@ double unlikeliness(const UnitPoints& few, const NetPoints& points, double tensi
             }
             square += values[i] * image;
         }
-        sum += static_cast<double>(count - kPlanes) * std::log(std::max(square, 1e-300)) -
-               determinant;
+        sum +=
+            static_cast<double>(count - kPlanes) * std::log(std::max(square, 1e-300)) - determinant;
     }
     return sum;
 }

@@ -34,8 +34,8 @@ inline std::array<double, 4> cubicWeights(double t, int derivative = 0) {
     }
 }
 
-/// Control point I of a cubic B-spline is spread over 2 I - 3 + a, a = 0 to 4, of the one with cells
-/// half as wide. C. K. Chui, "An Introduction to Wavelets", 1992: the two-scale relation.
+/// Control point I of a cubic B-spline is spread over 2 I - 3 + a, a = 0 to 4, of the one with
+/// cells half as wide. C. K. Chui, "An Introduction to Wavelets", 1992: the two-scale relation.
 inline constexpr std::array<double, 5> kTwoScale{0.125, 0.5, 0.75, 0.5, 0.125};
 
 }  // namespace bandvox

@@ -25,9 +25,9 @@ class RowCascade {
   private:
     struct Stage {
         std::size_t cells;
-        std::size_t next = 0;           // row that comes
-        std::vector<double> before;     // the last one with an odd number
-        std::vector<double> sum;        // of what the row that is being made has so far
+        std::size_t next = 0;        // row that comes
+        std::vector<double> before;  // the last one with an odd number
+        std::vector<double> sum;     // of what the row that is being made has so far
     };
     void push(std::size_t stage, const std::vector<double>& row);
 

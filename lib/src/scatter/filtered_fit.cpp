@@ -112,7 +112,8 @@ SampleShare TriangleSampler::nearest(double x, double y) const {
     for (const auto& [a, b] : mBorder) {
         const double dx = mPoints.x[b] - mPoints.x[a];
         const double dy = mPoints.y[b] - mPoints.y[a];
-        const double along = ((x - mPoints.x[a]) * dx + (y - mPoints.y[a]) * dy) / (dx * dx + dy * dy);
+        const double along =
+            ((x - mPoints.x[a]) * dx + (y - mPoints.y[a]) * dy) / (dx * dx + dy * dy);
         const double t = std::clamp(along, 0.0, 1.0);
         const double away = std::hypot(mPoints.x[a] + t * dx - x, mPoints.y[a] + t * dy - y);
         if (away >= least) continue;

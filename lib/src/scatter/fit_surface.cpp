@@ -60,7 +60,9 @@ using Columns = std::vector<std::vector<double>>;
 class Fitting {
   public:
     Fitting(UnitPoints unit, const FitSurfaceOptions& options, Progress& progress)
-        : mUnit(std::move(unit)), mOptions(options), mProgress(progress),
+        : mUnit(std::move(unit)),
+          mOptions(options),
+          mProgress(progress),
           mLacking(mUnit.values.size(), std::vector<double>(mUnit.points.size())) {}
 
     SurfaceFit run();
@@ -93,14 +95,15 @@ class Fitting {
     UnitPoints mUnit;
     const FitSurfaceOptions& mOptions;
     Progress& mProgress;
-    NetShape mShape;    // of the nets
-    Columns mNets;      // control points: of the sum of all levels, or of one
-    Columns mLacking;   // of each point's values
+    NetShape mShape;   // of the nets
+    Columns mNets;     // control points: of the sum of all levels, or of one
+    Columns mLacking;  // of each point's values
     double mLargest = 1, mRms = 1;
     SurfaceFit mFit;
 };
 
-/// The coarsest level with enough control points to take all values. A coarser net is a smoother one.
+/// The coarsest level with enough control points to take all values. A coarser net is a smoother
+/// one.
 int Fitting::levelOfCount() const {
     constexpr double kCellsForPoint = 1.6;
     int level = 1;
@@ -160,8 +163,8 @@ void Fitting::measure(const NetPoints& points, const Columns& nets, const Column
     mRms = std::sqrt(squares / static_cast<double>(points.size() * nets.size()));
 }
 
-void Fitting::solveColumns(const NetSolver& solver, const NetPoints& points,
-                           const Columns& targets, double reduction) {
+void Fitting::solveColumns(const NetSolver& solver, const NetPoints& points, const Columns& targets,
+                           double reduction) {
     std::vector<double> right(mShape.count()), weighted(points.size());
     for (std::size_t c = 0; c < mNets.size(); ++c) {
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -315,8 +318,8 @@ void Fitting::keepSum(int level) {
     mFit.report.push_back({level, mShape.inner, mLargest, mRms});
 }
 
-/// Levels for what is lacking: smooth ones as long as points are nearer to each other than cells are
-/// wide, then bumps.
+/// Levels for what is lacking: smooth ones as long as points are nearer to each other than cells
+/// are wide, then bumps.
 void Fitting::takeRest(int allowed) {
     constexpr double kMany = 1e5;
     const auto count = static_cast<double>(mUnit.points.size());
@@ -353,10 +356,9 @@ SurfaceFit Fitting::run() {
 
 BsplineSurface SurfaceFit::sum(std::size_t first, std::size_t last) const {
     if (first > last || last >= levels.size()) {
-        throw Error(ErrorKind::Usage, "levels " + std::to_string(first) + " to " +
-                                          std::to_string(last) + " of " +
-                                          std::to_string(levels.size()) +
-                                          "; expected some of those that are there");
+        throw Error(ErrorKind::Usage,
+                    "levels " + std::to_string(first) + " to " + std::to_string(last) + " of " +
+                        std::to_string(levels.size()) + "; expected some of those that are there");
     }
     BsplineSurface total = levels[first];
     for (std::size_t i = first + 1; i <= last; ++i) {

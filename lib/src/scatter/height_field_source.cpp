@@ -47,10 +47,9 @@ class HeightPatch final : public Patch {
 
     openvdb::BBoxd bounds(const ParameterCell& cell) const override {
         const auto [low, high] = std::minmax_element(mOrdinates.begin(), mOrdinates.end());
-        return {Vec3d(mCell.x0 + cell.u0 * mCell.width(), mCell.y0 + cell.v0 * mCell.height(),
-                      *low),
-                Vec3d(mCell.x0 + cell.u1 * mCell.width(), mCell.y0 + cell.v1 * mCell.height(),
-                      *high)};
+        return {
+            Vec3d(mCell.x0 + cell.u0 * mCell.width(), mCell.y0 + cell.v0 * mCell.height(), *low),
+            Vec3d(mCell.x0 + cell.u1 * mCell.width(), mCell.y0 + cell.v1 * mCell.height(), *high)};
     }
 
   private:
@@ -111,8 +110,8 @@ void appendWalls(const BsplineSurface& surface, double base, int column, PatchLi
     const auto [nx, ny] = surface.cells();
     const auto add = [&](double x0, double y0, double x1, double y1,
                          const std::array<double, 4>& ordinates) {
-        patches.push_back(std::make_unique<WallPatch>(Vec3d(x0, y0, base), Vec3d(x1, y1, base),
-                                                      ordinates));
+        patches.push_back(
+            std::make_unique<WallPatch>(Vec3d(x0, y0, base), Vec3d(x1, y1, base), ordinates));
     };
     for (int i = 0; i < nx; ++i) {
         const auto front = surface.bezierOrdinates(i, 0, column);

@@ -31,9 +31,9 @@ class IncompleteFactor {
     void factorRow(std::size_t row, std::size_t first);
 
     const SparseRows& mMatrix;
-    std::vector<double> mEntry;             // of the factor, where the matrix's are
-    std::vector<std::uint32_t> mBegin;      // of each row's entries in its block, after its start
-    std::vector<std::uint32_t> mDiagonal;   // after its start
+    std::vector<double> mEntry;            // of the factor, where the matrix's are
+    std::vector<std::uint32_t> mBegin;     // of each row's entries in its block, after its start
+    std::vector<std::uint32_t> mDiagonal;  // after its start
 };
 
 }  // namespace bandvox

@@ -46,10 +46,11 @@ class CellRows {
     void forNeighbors(CellOfPoint cell, const Visit& visit) const {
         const int last = static_cast<int>(mStart.size()) - 2;
         for (int row = std::max(0, cell.x - 3); row <= std::min(last, cell.x + 3); ++row) {
-            const auto end =
-                mEntries.begin() + static_cast<std::ptrdiff_t>(mStart[static_cast<std::size_t>(row) + 1]);
+            const auto end = mEntries.begin() +
+                             static_cast<std::ptrdiff_t>(mStart[static_cast<std::size_t>(row) + 1]);
             auto at = std::lower_bound(
-                mEntries.begin() + static_cast<std::ptrdiff_t>(mStart[static_cast<std::size_t>(row)]),
+                mEntries.begin() +
+                    static_cast<std::ptrdiff_t>(mStart[static_cast<std::size_t>(row)]),
                 end, Entry{cell.y - 3, 0});
             for (; at != end && at->column <= cell.y + 3; ++at) visit(at->point);
         }

@@ -11,9 +11,8 @@ namespace {
 constexpr std::size_t kPointsAtOnce = 4096;
 
 std::size_t stripOf(double u) {
-    return static_cast<std::size_t>(findCell(u * SortedPoints::kMostCells,
-                                             SortedPoints::kMostCells)
-                                        .cell);
+    return static_cast<std::size_t>(
+        findCell(u * SortedPoints::kMostCells, SortedPoints::kMostCells).cell);
 }
 
 /// Control points that count in a cell.
@@ -68,11 +67,9 @@ NetPoints::NetPoints(const SortedPoints& points, const NetShape& shape)
     std::size_t at = 0;
     for (std::size_t row = 0; row < rows; ++row) {
         at = static_cast<std::size_t>(
-            std::partition_point(points.u.begin() + static_cast<std::ptrdiff_t>(at),
-                                 points.u.end(),
-                                 [&](double u) {
-                                     return static_cast<std::size_t>(shape.find(u, 0).cell) < row;
-                                 }) -
+            std::partition_point(
+                points.u.begin() + static_cast<std::ptrdiff_t>(at), points.u.end(),
+                [&](double u) { return static_cast<std::size_t>(shape.find(u, 0).cell) < row; }) -
             points.u.begin());
         mRowStart[row] = at;
     }
@@ -156,8 +153,8 @@ void NetPoints::addNormal(NetStencil& stencil) const {
                     double* const to = stencil.entries((row + k / 4) * mRow + column + k % 4);
                     for (std::size_t l = 0; l < kControls; ++l) {
                         // Below the blocks on the diagonal stands what is above them.
-                        const double entry = l / 4 < k / 4 ? own[l * kControls + k]
-                                                           : own[k * kControls + l];
+                        const double entry =
+                            l / 4 < k / 4 ? own[l * kControls + k] : own[k * kControls + l];
                         to[(3 + l / 4 - k / 4) * 7 + 3 + l % 4 - k % 4] += entry;
                     }
                 }

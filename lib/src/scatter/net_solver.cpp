@@ -30,8 +30,7 @@ NetSolver::NetSolver(NetStencil stencil) {
     constexpr std::size_t kSmallEnough = 3000;
     const bool isFactored = stencil.count() <= kLargestFactored;
     mLevels.push_back(std::move(stencil));
-    while (!isFactored && mLevels.back().canCoarsen() &&
-           mLevels.back().count() > kSmallEnough) {
+    while (!isFactored && mLevels.back().canCoarsen() && mLevels.back().count() > kSmallEnough) {
         mLevels.push_back(mLevels.back().coarsened());
     }
     mFactor.emplace(mLevels.back());

@@ -10,7 +10,9 @@ namespace {
 constexpr std::size_t kNumbersAtOnce = std::size_t(1) << 14;
 
 /// How many rows of a net make a piece of work.
-std::size_t rowsAtOnce(std::size_t row) { return std::max<std::size_t>(1, 4096 / row); }
+std::size_t rowsAtOnce(std::size_t row) {
+    return std::max<std::size_t>(1, 4096 / row);
+}
 
 struct Extents {
     std::size_t x, y;
@@ -77,9 +79,9 @@ void coarsenAxis(std::size_t fine, std::size_t coarse, std::size_t line, const F
                         const std::ptrdiff_t gap =
                             its.first + static_cast<std::ptrdiff_t>(b) - m + 3;
                         if (gap < 0 || gap > 6) continue;
-                        sum += own.weight[a] * its.weight[b] *
-                               from(line, static_cast<std::size_t>(m),
-                                    static_cast<std::size_t>(gap));
+                        sum +=
+                            own.weight[a] * its.weight[b] *
+                            from(line, static_cast<std::size_t>(m), static_cast<std::size_t>(gap));
                     }
                 }
             }

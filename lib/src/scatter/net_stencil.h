@@ -36,7 +36,8 @@ class NetStencil {
     /// y = A x.
     void multiply(std::span<const double> x, std::span<double> y) const;
 
-    /// One Gauss-Seidel sweep over x for A x = b, from the first colour of rows to the last or back.
+    /// One Gauss-Seidel sweep over x for A x = b, from the first colour of rows to the last or
+    /// back.
     void relax(std::span<const double> b, std::span<double> x, bool forward) const;
 
     /// True if each axis with more than one cell has an even number.

@@ -125,9 +125,9 @@ Rectangle boundingRectangle(const ScatteredPoints& points) {
     Rectangle rectangle{*x0, *y0, *x1, *y1};
     const double longest = std::max(rectangle.width(), rectangle.height());
     if (!(longest > 0)) {
-        throw Error(ErrorKind::Input,
-                    "the points are all at " + shownPlace(rectangle.x0, rectangle.y0) +
-                        "; expected two places at least");
+        throw Error(ErrorKind::Input, "the points are all at " +
+                                          shownPlace(rectangle.x0, rectangle.y0) +
+                                          "; expected two places at least");
     }
     constexpr double kFlattest = 1.0 / 1024;
     const auto widen = [&](double& low, double& high) {

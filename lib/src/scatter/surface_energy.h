@@ -8,8 +8,8 @@ namespace bandvox {
 /// Integrals of products of neighbouring splines: entry d belongs to the neighbour at d - 3.
 using GramBand = std::array<double, 7>;
 
-/// ∫ B_i^(k) B_{i+d-3}^(k) over all cells, exactly, for the uniform cubic B-splines of so many cells
-/// and their derivatives of order k = 0 to 3.
+/// ∫ B_i^(k) B_{i+d-3}^(k) over all cells, exactly, for the uniform cubic B-splines of so many
+/// cells and their derivatives of order k = 0 to 3.
 std::vector<GramBand> gramBands(int cells, double cellSize, int derivative);
 
 /// How a surface is kept smooth where data leave it open: the weights of ∫ |D^m f|², m = 1, 2, 3,

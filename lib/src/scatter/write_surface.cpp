@@ -36,8 +36,7 @@ struct SampledField {
           dx(surface.sample({samples[0], samples[1], column, 1, 0})),
           dy(surface.sample({samples[0], samples[1], column, 0, 1})) {
         for (int c = 0; red >= 0 && c < 3; ++c) {
-            color[static_cast<std::size_t>(c)] =
-                surface.sample({samples[0], samples[1], red + c});
+            color[static_cast<std::size_t>(c)] = surface.sample({samples[0], samples[1], red + c});
         }
     }
 

@@ -41,7 +41,8 @@ PointCloud readTextPoints(const FileContents& file, Progress& progress) {
     for (bool isThere = !isNamed || table.next(); isThere; isThere = table.next()) {
         table.requireWidth(width);
         for (std::size_t i = 0; i < kPointValues; ++i) {
-            if (columns.column[i]) values[i] = table.number(*columns.column[i], kPointValueNames[i]);
+            if (columns.column[i])
+                values[i] = table.number(*columns.column[i], kPointValueNames[i]);
         }
         builder.add(values, fail);
         if (table.position() - told < kStep) continue;

@@ -50,8 +50,7 @@ std::optional<double> numberOf(std::string_view word) {
     return value;
 }
 
-bool TableRows::begin(
-    const std::function<bool(const std::vector<std::string>&)>& isHeader) {
+bool TableRows::begin(const std::function<bool(const std::vector<std::string>&)>& isHeader) {
     bool isFirst = true;
     for (std::string_view line; takeLine(line);) {
         if (withoutBlanks(line).empty()) continue;
@@ -90,8 +89,8 @@ bool TableRows::takeLine(std::string_view& line) {
 
 void TableRows::split(std::string_view line) {
     mCells.clear();
-    line = mSeparator == '\t' ? line.substr(0, line.find_last_not_of('\r') + 1)
-                              : withoutBlanks(line);
+    line =
+        mSeparator == '\t' ? line.substr(0, line.find_last_not_of('\r') + 1) : withoutBlanks(line);
     if (mSeparator == ' ') {
         while (!line.empty()) {
             const std::size_t end = std::min(line.find_first_of(kCellBlanks), line.size());

@@ -24,8 +24,8 @@ class TableRows {
         if (mRest.starts_with("\xEF\xBB\xBF")) mRest.remove_prefix(3);
     }
 
-    /// Finds the first row, of names or numbers; false if there is none. A comment in the first line
-    /// is one if `isHeader` says so of the words in it.
+    /// Finds the first row, of names or numbers; false if there is none. A comment in the first
+    /// line is one if `isHeader` says so of the words in it.
     bool begin(const std::function<bool(const std::vector<std::string>&)>& isHeader);
 
     /// Goes to the next row; false at the end.

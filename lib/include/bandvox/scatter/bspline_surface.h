@@ -30,9 +30,9 @@ struct SurfaceJet {
 
 /// A grid of samples over a surface's rectangle, from border to border.
 struct GridSampling {
-    int nx = 2, ny = 2;    ///< samples along x and y, 2 or more
-    int column = 0;        ///< which of the values
-    int dx = 0, dy = 0;    ///< order of the derivative along x and y, 0 to 3
+    int nx = 2, ny = 2;  ///< samples along x and y, 2 or more
+    int column = 0;      ///< which of the values
+    int dx = 0, dy = 0;  ///< order of the derivative along x and y, 0 to 3
 };
 
 /// Values over a rectangle as a tensor product of uniform cubic B-splines; twice continuously

@@ -18,14 +18,14 @@ struct FilteredFitOptions {
 };
 
 /// Fits a surface as the paper has it, M. Hashimoto, "Smooth Interpolation using Multiresolution
-/// Analysis": level by level and pass by pass, what is lacking is interpolated linearly on a Delaunay
-/// triangulation of the points, sampled, filtered by a cascade of (1/6, 2/3, 1/6), and interpolated by a
-/// spline whose two outermost control points are equal. Samples go through the cascade row by row,
-/// and none is kept. Beyond the convex hull they have the values of the nearest places on it, of
-/// which the paper does not speak.
+/// Analysis": level by level and pass by pass, what is lacking is interpolated linearly on a
+/// Delaunay triangulation of the points, sampled, filtered by a cascade of (1/6, 2/3, 1/6), and
+/// interpolated by a spline whose two outermost control points are equal. Samples go through the
+/// cascade row by row, and none is kept. Beyond the convex hull they have the values of the nearest
+/// places on it, of which the paper does not speak.
 ///
-/// It is the measure for fitSurface, which needs fewer passes and comes nearer. Throws as that does,
-/// and Error(ErrorKind::Input) for points on a line, which have no triangles.
+/// It is the measure for fitSurface, which needs fewer passes and comes nearer. Throws as that
+/// does, and Error(ErrorKind::Input) for points on a line, which have no triangles.
 SurfaceFit fitByFiltering(const ScatteredPoints& points, const FilteredFitOptions& options = {},
                           Progress& progress = silentProgress());
 

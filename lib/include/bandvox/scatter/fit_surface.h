@@ -21,7 +21,8 @@ struct FitSurfaceOptions {
     /// Above 0: the values have errors of this standard deviation, world units, and the surface is
     /// the smoothest that differs from them by so much in the root of the mean square. 0: none.
     double noise = 0;
-    /// The finest level has 2^maxLevel cells along the longer side; 1 to 13. Default: from the data.
+    /// The finest level has 2^maxLevel cells along the longer side; 1 to 13. Default: from the
+    /// data.
     std::optional<int> maxLevel;
     /// 1 / length, in units of the root of the rectangle's area, 0.01 or more: the surface is stiff
     /// within that length, and like a membrane farther off. Default: the most likely one.
@@ -51,8 +52,8 @@ struct SurfaceFit {
     BsplineSurface sum() const { return sum(0, levels.size() - 1); }
 };
 
-/// Fits a sum of uniform cubic B-spline surfaces, of 2^k + 3 control points along the longer side of
-/// the rectangle and cells as square as they can be, to values at scattered points.
+/// Fits a sum of uniform cubic B-spline surfaces, of 2^k + 3 control points along the longer side
+/// of the rectangle and cells as square as they can be, to values at scattered points.
 ///
 /// Of all such surfaces with the values, that of least energy: the integral of the squares of the
 /// third derivatives, and less of the second and first, over the rectangle and half as much around

@@ -19,7 +19,8 @@ struct PointColumnChoice {
 /// Points, and what the file calls their values.
 struct NamedPoints {
     ScatteredPoints points;
-    std::vector<std::string> names;  ///< one for each column of values; "value" or "value 2" if none
+    std::vector<std::string>
+        names;  ///< one for each column of values; "value" or "value 2" if none
 };
 
 /// Reads a table of places and values.

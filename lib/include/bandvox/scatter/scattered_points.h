@@ -9,8 +9,8 @@ namespace bandvox {
 
 /// Values at places in a plane, in any order.
 struct ScatteredPoints {
-    std::vector<double> x, y;  ///< world units, finite
-    int columns = 1;           ///< values at each place, 1 or more
+    std::vector<double> x, y;    ///< world units, finite
+    int columns = 1;             ///< values at each place, 1 or more
     std::vector<double> values;  ///< [place][column], finite
 
     std::size_t size() const { return x.size(); }
