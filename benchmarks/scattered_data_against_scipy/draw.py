@@ -56,6 +56,25 @@ def side_by_side(pictures):
     return np.hstack(parts[1:])
 
 
+def terrain(x, y):
+    """Hills and a valley that winds."""
+    valley = y - 0.5 - 0.15 * np.sin(7 * x)
+    hills = np.sin(9 * x + 4 * y) * np.cos(11 * y - 3 * x) + 0.4 * np.sin(21 * x) * np.sin(17 * y)
+    return 0.08 * hills - 0.25 * np.exp(-40 * valley**2)
+
+
+def contour_points(function, lines=12, side=160):
+    """Places where contour lines cross the lines of a grid, as a map that was digitised has them."""
+    line = np.linspace(0, 1, side)
+    heights = function(*np.meshgrid(line, line, indexing="ij"))
+    found = []
+    for level in np.linspace(heights.min(), heights.max(), lines + 2)[1:-1]:
+        for i, j in np.argwhere((heights[:-1] < level) != (heights[1:] < level)):
+            part = (level - heights[i, j]) / (heights[i + 1, j] - heights[i, j])
+            found.append([line[i] + part / (side - 1), line[j], level])
+    return np.array(found)
+
+
 def main():
     command, folder = sys.argv[1], pathlib.Path(sys.argv[2])
     # The corners are known as well, so that all see the whole square.
@@ -69,6 +88,14 @@ def main():
         figures = [lambda places: run.bump(*places.T), theirs, ours]
         png(folder / "fit-bump.png", side_by_side([shaded(figure) for figure in figures]))
         levels = [bandvox.fit(points, values, f"1..{last}") for last in (1, 2, 3, 4)]
+        known = contour_points(terrain)
+        made = bandvox.fit(known[:, :2], known[:, 2], tolerance="1e-4")
+        places = np.full((SCALE * (SIDE - 1),) * 2, 255, np.uint8)
+        pixels = np.clip((known[:, :2] - 0.03) / 0.94 * places.shape[0], 0, places.shape[0] - 1)
+        places[places.shape[0] - 1 - pixels[:, 1].astype(int), pixels[:, 0].astype(int)] = 0
+        truth = shaded(lambda at: terrain(*at.T))
+        png(folder / "fit-terrain.png", side_by_side([places, shaded(made), truth]))
+        print(f"terrain: {len(known)} places")
         png(folder / "fit-levels.png", side_by_side([shaded(level) for level in levels]))
 
 

@@ -122,15 +122,16 @@ double BsplineSurface::value(double x, double y, int column) const {
 SurfaceJet BsplineSurface::jet(double x, double y, int column) const {
     const double perX = mCells[0] / mRectangle.width();
     const double perY = mCells[1] / mRectangle.height();
-    const auto [cellX, placeX] = findCell((x - mRectangle.x0) * perX, mCells[0]);
-    const auto [cellY, placeY] = findCell((y - mRectangle.y0) * perY, mCells[1]);
+    const KnotPlace alongX = findCell((x - mRectangle.x0) * perX, mCells[0]);
+    const KnotPlace alongY = findCell((y - mRectangle.y0) * perY, mCells[1]);
     const std::size_t rows = static_cast<std::size_t>(mCells[1]) + 3;
-    const double* const corner = control(column).data() + static_cast<std::size_t>(cellX) * rows +
-                                 static_cast<std::size_t>(cellY);
+    const double* const corner = control(column).data() +
+                                 static_cast<std::size_t>(alongX.cell) * rows +
+                                 static_cast<std::size_t>(alongY.cell);
     // along[b][d]: the derivative of order d along x, for the control points b along y.
     std::array<std::array<double, 3>, 4> along{};
     for (int d = 0; d < 3; ++d) {
-        const auto weights = cubicWeights(placeX, d);
+        const auto weights = cubicWeights(alongX.place, d);
         for (std::size_t a = 0; a < 4; ++a) {
             for (std::size_t b = 0; b < 4; ++b) {
                 along[b][static_cast<std::size_t>(d)] += weights[a] * corner[a * rows + b];
@@ -138,7 +139,7 @@ SurfaceJet BsplineSurface::jet(double x, double y, int column) const {
         }
     }
     const auto sum = [&](std::size_t dx, int dy) {
-        const auto weights = cubicWeights(placeY, dy);
+        const auto weights = cubicWeights(alongY.place, dy);
         double total = 0;
         for (std::size_t b = 0; b < 4; ++b) total += weights[b] * along[b][dx];
         return total;

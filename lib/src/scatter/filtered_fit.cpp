@@ -41,6 +41,10 @@ class TriangleSampler {
     int mSide = 1;
     std::vector<std::vector<std::size_t>> mCells;
 
+    std::size_t cellIndex(int i, int j) const {
+        return static_cast<std::size_t>(i) * static_cast<std::size_t>(mSide) +
+               static_cast<std::size_t>(j);
+    }
     int cellAlong(double place, double low, double size) const {
         return std::clamp(static_cast<int>((place - low) / size * mSide), 0, mSide - 1);
     }
@@ -72,7 +76,7 @@ TriangleSampler::TriangleSampler(const ScatteredPoints& points, const Rectangle&
              i <= cellAlong(x1, rectangle.x0, rectangle.width()); ++i) {
             for (int j = cellAlong(y0, rectangle.y0, rectangle.height());
                  j <= cellAlong(y1, rectangle.y0, rectangle.height()); ++j) {
-                mCells[static_cast<std::size_t>(i * mSide + j)].push_back(t);
+                mCells[cellIndex(i, j)].push_back(t);
             }
         }
     }
@@ -131,7 +135,7 @@ double TriangleSampler::at(double x, double y, const std::vector<double>& values
         for (std::size_t k = 0; k < 3; ++k) total += share.weight[k] * values[share.point[k]];
         return total;
     };
-    for (const std::size_t triangle : mCells[static_cast<std::size_t>(i * mSide + j)]) {
+    for (const std::size_t triangle : mCells[cellIndex(i, j)]) {
         bool isInside = false;
         const SampleShare share = inside(x, y, triangle, isInside);
         if (isInside) return sum(share);

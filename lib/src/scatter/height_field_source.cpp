@@ -87,7 +87,8 @@ class WallPatch final : public Patch {
 
 Rectangle cellOfSurface(const BsplineSurface& surface, int i, int j) {
     const Rectangle& r = surface.rectangle();
-    const auto [nx, ny] = surface.cells();
+    const int nx = surface.cells()[0];
+    const int ny = surface.cells()[1];
     const auto x = [&](int k) { return k == nx ? r.x1 : r.x0 + r.width() * k / nx; };
     const auto y = [&](int k) { return k == ny ? r.y1 : r.y0 + r.height() * k / ny; };
     return {x(i), y(j), x(i + 1), y(j + 1)};

@@ -60,7 +60,9 @@ class CellRows {
     struct Entry {
         int column;
         std::uint32_t point;
-        auto operator<=>(const Entry&) const = default;
+        bool operator<(const Entry& other) const {
+            return column != other.column ? column < other.column : point < other.point;
+        }
     };
     std::vector<std::size_t> mStart;
     std::vector<Entry> mEntries;

@@ -70,13 +70,14 @@ void writeBezierPatches(AtomicFile& file, const BsplineSurface& surface, int col
         for (int j = 0; j < ny; ++j) {
             text += "3 3\n";
             const auto ordinates = surface.bezierOrdinates(i, j, column);
+            auto ordinate = ordinates.begin();
             for (int a = 0; a < 4; ++a) {
                 for (int b = 0; b < 4; ++b) {
                     appendNumber(text, r.x0 + r.width() * (3 * i + a) / (3.0 * nx));
                     text += ' ';
                     appendNumber(text, r.y0 + r.height() * (3 * j + b) / (3.0 * ny));
                     text += ' ';
-                    appendNumber(text, ordinates[static_cast<std::size_t>(4 * a + b)]);
+                    appendNumber(text, *ordinate++);
                     text += '\n';
                 }
             }
@@ -103,6 +104,7 @@ void writeSamples(AtomicFile& file, const BsplineSurface& surface, std::array<in
     std::ofstream stream = file.open();
     writeText(stream, text, file);
     std::vector<std::vector<double>> columns;
+    columns.reserve(static_cast<std::size_t>(surface.columns()));
     for (int c = 0; c < surface.columns(); ++c) {
         columns.push_back(surface.sample({samples[0], samples[1], c}));
     }
