@@ -17,6 +17,9 @@ struct Command {
 const CommandTable& convertTable();
 void runConvert(const CommandLine& line);
 
+const CommandTable& fitTable();
+void runFit(const CommandLine& line);
+
 const CommandTable& voxelizeTable();
 void runVoxelize(const CommandLine& line);
 
@@ -38,9 +41,9 @@ void runView(const CommandLine& line);
 /// All commands, in the order in which the help lists them.
 inline const std::vector<Command>& commands() {
     static const std::vector<Command> all{{convertTable, runConvert}, {voxelizeTable, runVoxelize},
-                                          {renderTable, runRender},   {infoTable, runInfo},
-                                          {compareTable, runCompare}, {mergeTable, runMerge},
-                                          {viewTable, runView}};
+                                          {fitTable, runFit},         {renderTable, runRender},
+                                          {infoTable, runInfo},       {compareTable, runCompare},
+                                          {mergeTable, runMerge},     {viewTable, runView}};
     return all;
 }
 

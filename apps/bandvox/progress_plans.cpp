@@ -1,5 +1,6 @@
 #include "progress_plans.h"
 
+#include "command_run.h"
 #include "convert_settings.h"
 #include "convert_volume.h"
 
@@ -88,6 +89,11 @@ std::vector<ExpectedStage> expectedStages(const CommandLine& line) {
         append(stages, {{"voxelizing", 60}, {"assembling", 6}});
     } else if (command == "render") {
         stages = {{"read", 6}, {"preparing", 6}, {"drawing", 80}};
+    } else if (command == "fit") {
+        stages = {{"read points", 10}, {"fitting", 60}};
+        if (extensionOf(line.text("output").value_or("")) == ".vdb") {
+            append(stages, {{"band-limiting", 60}, {"assembling", 4}});
+        }
     } else if (command == "view") {
         stages = {{"read", 6}, {"reduce", 20}, {"count", 10}, {"spectrum", 30}};
     } else {

@@ -1,0 +1,215 @@
+// bandvox fit: values at scattered places as a smooth surface.
+
+#include "command_run.h"
+#include "commands.h"
+#include "density_report.h"
+#include "fit_output.h"
+#include "mesh_output.h"
+#include "standard_streams.h"
+#include "volume_options.h"
+#include "words.h"
+
+#include <bandvox/scatter/fit_surface.h>
+#include <bandvox/scatter/read_scattered_points.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace bandvox::app {
+
+const CommandTable& fitTable() {
+    static const CommandTable table = [] {
+        CommandTable made{
+            "fit",
+            "Fit a smooth surface to values at scattered places.",
+            "Reads a table of places and values, x y and a value or several in each line, and "
+            "makes "
+            "of them the smoothest sum of B-spline surfaces that has these values. It is twice "
+            "continuously differentiable, and written as Bézier patches, samples, a mesh, a "
+            "picture, or the solid under it.",
+            {{"POINTS", "A table: .csv .xyz .txt, or .npy with a row for each point."}},
+            {
+                {"columns", 0, "X,Y,VALUE,...", "x, y and all others",
+                 "The columns to take, by name or number from 1.", "Points"},
+                {"rectangle", 0, "X0,Y0,X1,Y1", "of the points",
+                 "What the surface covers; all points have to be in it.", "Points"},
+                {"tolerance", 0, "T", "1e-12",
+                 "How far the surface may be off at a point, in parts of the values' range, 0 to "
+                 "1. "
+                 "More gives a coarser net. If it is given and not reached, the status is 4.",
+                 "Surface"},
+                {"smooth", 0, "NOISE", "",
+                 "The values have errors of this standard deviation: the smoothest surface that "
+                 "differs from them by so much.",
+                 "Surface"},
+                {"max-level", 0, "K", "from the data",
+                 "At most 2^K cells along the longer side, 1 to 13.", "Surface"},
+                {"levels", 0, "A..B", "all",
+                 "Sum up levels A to B only, as counted from 1: 1..3 leaves detail away.",
+                 "Surface"},
+                {"tension", 0, "T", "the most likely",
+                 "The surface is stiff within 1/T, and like a membrane farther off, in units of "
+                 "the "
+                 "root of the rectangle's area; 0.01 to 10000.",
+                 "Surface"},
+            },
+            {
+                {"bandvox fit points.csv -o surface.bpt", "Bicubic Bézier patches."},
+                {"bandvox fit points.csv -o surface.npy --samples 1001", "An array of samples."},
+                {"bandvox fit terrain.csv -o terrain.vdb -r 500 --smooth 0.2",
+                 "The solid under a terrain, whose heights were measured to 0.2."},
+            }};
+        for (const OptionEntry& entry : fitOutputEntries()) made.options.push_back(entry);
+        return made;
+    }();
+    return table;
+}
+
+namespace {
+
+struct FitRequest {
+    std::string input;
+    PointColumnChoice columns;
+    FitSurfaceOptions fit;
+    bool hasTolerance = false;
+    std::optional<std::array<int, 2>> levels;  // from 1
+    FitOutput output;
+};
+
+std::vector<std::string> wordsIn(const std::string& text) {
+    std::vector<std::string> words;
+    for (const std::string_view word : split(text, ',')) words.emplace_back(word);
+    return words;
+}
+
+Rectangle readRectangle(const CommandLine& line, const std::string& text) {
+    std::array<double, 4> numbers{};
+    const std::vector<std::string> words = wordsIn(text);
+    bool isRectangle = words.size() == numbers.size();
+    for (std::size_t i = 0; isRectangle && i < numbers.size(); ++i) {
+        const char* const end = words[i].data() + words[i].size();
+        const auto [at, status] = std::from_chars(words[i].data(), end, numbers[i]);
+        isRectangle = status == std::errc() && at == end && std::isfinite(numbers[i]);
+    }
+    if (!isRectangle || numbers[0] >= numbers[2] || numbers[1] >= numbers[3]) {
+        line.fail("rectangle", "X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1");
+    }
+    return {numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
+std::array<int, 2> readLevels(const CommandLine& line, const std::string& text) {
+    std::array<int, 2> levels{};
+    const char* const end = text.data() + text.size();
+    const auto first = std::from_chars(text.data(), end, levels[0]);
+    bool isRange = first.ec == std::errc() && text.compare(first.ptr - text.data(), 2, "..") == 0;
+    if (isRange) {
+        const auto last = std::from_chars(first.ptr + 2, end, levels[1]);
+        isRange = last.ec == std::errc() && last.ptr == end;
+    }
+    if (!isRange || levels[0] < 1 || levels[1] < levels[0]) {
+        line.fail("levels", "A..B with 1 <= A <= B");
+    }
+    return levels;
+}
+
+FitRequest parseFit(const CommandLine& line) {
+    FitRequest request;
+    request.input = line.positional(0);
+    if (const auto text = line.text("columns")) request.columns.columns = wordsIn(*text);
+    FitSurfaceOptions& fit = request.fit;
+    if (const auto text = line.text("rectangle")) fit.rectangle = readRectangle(line, *text);
+    request.hasTolerance = line.has("tolerance");
+    fit.tolerance = line.number("tolerance", {.low = 0, .high = 1}, fit.tolerance);
+    if (line.has("smooth")) fit.noise = line.number("smooth", {.low = 0, .lowOpen = true}, 1);
+    if (fit.noise > 0) refuseOptions(line, {"tolerance"}, "with --smooth");
+    if (line.has("max-level")) fit.maxLevel = line.wholeNumber("max-level", 1, 13, 1);
+    if (line.has("tension")) fit.tension = line.number("tension", {.low = 0.01, .high = 1e4}, 1);
+    if (const auto text = line.text("levels")) request.levels = readLevels(line, *text);
+    request.output = readFitOutput(line);
+    return request;
+}
+
+void sayFit(CommandRun& run, const SurfaceFit& fit) {
+    const FitLevel& last = fit.report.back();
+    run.say(
+        "fitted   " + formatCount(static_cast<std::int64_t>(fit.levels.size()), "level", "levels") +
+        ", the finest of " + std::to_string(last.cells[0]) + " x " + std::to_string(last.cells[1]) +
+        " cells; at the points off by " + formatNumber(last.largest, 2) +
+        " of the range at most, tension " + formatNumber(fit.tension, 3));
+    nlohmann::json levels = nlohmann::json::array();
+    for (const FitLevel& level : fit.report) {
+        run.sayMore("         level " + std::to_string(level.level) + ": " +
+                    std::to_string(level.cells[0]) + " x " + std::to_string(level.cells[1]) +
+                    " cells, off by " + formatNumber(level.largest, 2) + " at most, " +
+                    formatNumber(level.rms, 2) + " in the root of the mean square");
+        levels.push_back({{"level", level.level},
+                          {"cells", level.cells},
+                          {"largest", level.largest},
+                          {"rms", level.rms}});
+    }
+    run.count("points", fit.points);
+    run.count("duplicates", fit.duplicates);
+    run.count("tension", fit.tension);
+    run.count("levels", levels);
+    if (fit.duplicates > 0) {
+        run.say("         " +
+                formatCount(static_cast<std::int64_t>(fit.duplicates), "point was", "points were") +
+                " in the place of another, and averaged");
+    }
+}
+
+// What the user asked for has to be there; what holds otherwise is worth a warning.
+void judgeFit(CommandRun& run, const FitRequest& request, const SurfaceFit& fit) {
+    const double largest = fit.report.back().largest;
+    if (request.fit.noise > 0 || largest <= request.fit.tolerance) return;
+    std::string message = "the surface is off by " + formatNumber(largest, 3);
+    message += " of the range at a point; expected " + formatNumber(request.fit.tolerance, 3);
+    message += " at most, by --tolerance";
+    if (request.hasTolerance) throw Error(ErrorKind::Result, message);
+    run.warn({message}, ErrorKind::Result);
+}
+
+BsplineSurface chosenSum(const FitRequest& request, SurfaceFit& fit) {
+    if (!request.levels) return fit.sum();
+    const auto count = static_cast<int>(fit.levels.size());
+    const auto [first, last] = *request.levels;
+    if (first > count) {
+        throw Error(ErrorKind::Usage, "option --levels begins at " + std::to_string(first) +
+                                          ", and there are " + std::to_string(count) +
+                                          " levels; expected one of them");
+    }
+    return fit.sum(static_cast<std::size_t>(first) - 1,
+                   static_cast<std::size_t>(std::min(last, count)) - 1);
+}
+
+}  // namespace
+
+void runFit(const CommandLine& line) {
+    const FitRequest request = parseFit(line);
+    CommandRun run(line);
+    AtomicFile output(request.output.path);
+    NamedPoints named = readScatteredPoints(request.input, request.columns, run.progress());
+    run.say("read     " + request.input + ": " +
+            formatCount(static_cast<std::int64_t>(named.points.size()), "point", "points") +
+            " with " + joined(named.names, ", "));
+    SurfaceFit fit;
+    {
+        const ProgressStage stage(run.progress(), "fitting", 0);
+        fit = fitSurface(named.points, request.fit, run.progress());
+    }
+    sayFit(run, fit);
+    judgeFit(run, request, fit);
+    const BsplineSurface surface = chosenSum(request, fit);
+    fit.levels.clear();
+    writeFit(run, output, request.output, {surface, named.names, request.input});
+}
+
+}  // namespace bandvox::app

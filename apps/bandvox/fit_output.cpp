@@ -1,0 +1,159 @@
+#include "fit_output.h"
+
+#include "density_report.h"
+#include "mesh_output.h"
+#include "standard_streams.h"
+#include "volume_options.h"
+#include "words.h"
+
+#include <bandvox/bandlimit/surface_to_density.h>
+#include <bandvox/mesh/write_mesh.h>
+#include <bandvox/render/image.h>
+#include <bandvox/scatter/height_field_source.h>
+#include <bandvox/scatter/write_surface.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace bandvox::app {
+namespace {
+
+constexpr int kStandardSamples = 257;
+constexpr double kStandardMargin = 0.1;
+
+/// The index of the first of three columns that are colours, or -1.
+int redColumn(const std::vector<std::string>& names) {
+    const std::array<std::array<const char*, 3>, 3> known{
+        {{"r", "g", "b"}, {"red", "green", "blue"}, {"cd.r", "cd.g", "cd.b"}}};
+    for (std::size_t i = 0; i + 2 < names.size(); ++i) {
+        for (const auto& three : known) {
+            if (lowerCase(names[i]) == three[0] && lowerCase(names[i + 1]) == three[1] &&
+                lowerCase(names[i + 2]) == three[2]) {
+                return static_cast<int>(i);
+            }
+        }
+    }
+    return -1;
+}
+
+/// Samples along x and y, so many along the longer side, as far apart along both.
+std::array<int, 2> samplesOf(const BsplineSurface& surface, int longer) {
+    const double width = surface.rectangle().width();
+    const double height = surface.rectangle().height();
+    const double step = std::max(width, height) / (longer - 1);
+    const auto count = [&](double side) {
+        return std::max(2, static_cast<int>(std::lround(side / step)) + 1);
+    };
+    return {count(width), count(height)};
+}
+
+void writeSolid(CommandRun& run, AtomicFile& output, const FitOutput& request,
+                const FittedSurface& fitted) {
+    const double base = request.base ? *request.base : heightBelow(fitted.surface, kStandardMargin);
+    const std::string name = std::filesystem::path(fitted.input).filename().string();
+    const auto source = makeHeightFieldSource(name, fitted.surface, base);
+    run.say("solid    between the surface and z = " + formatNumber(base) + ", volume " +
+            formatNumber(source->volume()));
+    run.count("base", base);
+    DensityResult density = surfaceToDensity(*source, request.density, run.progress());
+    if (request.write.half) {
+        density.metadata.storageError = roundToHalf(*density.grid);
+        density.metadata.gridVolume = densityIntegral(*density.grid);
+        setDensityMetadata(*density.grid, density.metadata);
+    }
+    sayDensity(run, density,
+               formatNumber(density.metadata.closureError, 2) + " measured by closure, tolerance " +
+                   formatNumber(density.metadata.tolerance, 2));
+    run.warn(density.warnings, ErrorKind::Result);
+    run.writeOutput(output,
+                    [&](AtomicFile& file) { writeVdb(file, {density.grid}, request.write); });
+}
+
+FitOutput::Kind kindOf(const std::filesystem::path& path) {
+    const std::string extension = extensionOf(path);
+    if (extension == ".bpt") return FitOutput::Kind::Patches;
+    if (extension == ".npy") return FitOutput::Kind::Samples;
+    if (extension == ".exr") return FitOutput::Kind::Picture;
+    if (extension == ".vdb") return FitOutput::Kind::Density;
+    if (isWritableMesh(path)) return FitOutput::Kind::Mesh;
+    throw Error(ErrorKind::Usage, "output '" + path.string() +
+                                      "' is of an unknown kind; expected .bpt, .npy, .exr, .vdb, "
+                                      ".obj, .ply, .stl, .gltf or .glb");
+}
+
+}  // namespace
+
+std::vector<OptionEntry> fitOutputEntries() {
+    std::vector<OptionEntry> entries{
+        {"output", 'o', "FILE", "",
+         "What to write: .bpt Bézier patches of the first value, which are the surface exactly; "
+         ".npy samples of all values as doubles, [x][y][value]; .exr height as Z, with normals and "
+         "positions; .obj .ply .stl .gltf .glb a mesh with normals; .vdb the density of the solid "
+         "under the surface. Columns named r, g and b are the colours of meshes and pictures. "
+         "Needed.",
+         "Output"},
+        {"samples", 0, "N", std::to_string(kStandardSamples),
+         "Samples along the longer side of a mesh, a picture or an array, from border to border.",
+         "Output"},
+        resolutionEntry(DensityOptions().resolution),
+        voxelSizeEntry(),
+        {"base", 0, "Z", "below the surface", "Where the solid of a .vdb file ends below.",
+         "Output"},
+    };
+    for (const OptionEntry& entry : filterEntries(DensityOptions().filter)) {
+        entries.push_back(entry);
+    }
+    entries.push_back({"half", 0, "", "", "Store 16-bit values in a .vdb file.", "Output"});
+    entries.push_back(compressionEntry());
+    return entries;
+}
+
+FitOutput readFitOutput(const CommandLine& line) {
+    FitOutput request;
+    request.path = outputPath(line.requiredText("output"));
+    request.kind = kindOf(request.path);
+    constexpr int kMostSamples = 32768;
+    request.samples = line.wholeNumber("samples", 2, kMostSamples, kStandardSamples);
+    const bool isSampled = request.kind == FitOutput::Kind::Mesh ||
+                           request.kind == FitOutput::Kind::Picture ||
+                           request.kind == FitOutput::Kind::Samples;
+    if (!isSampled) refuseOptions(line, {"samples"}, "with this kind of output");
+    if (request.kind != FitOutput::Kind::Density) {
+        refuseOptions(
+            line, {"resolution", "voxel-size", "base", "cutoff", "order", "half", "compression"},
+            "without a .vdb output");
+        return request;
+    }
+    readSize(line, request.density.resolution, request.density.voxelSize);
+    request.density.filter = readFilter(line, request.density.filter);
+    if (line.has("base")) request.base = line.number("base", kAnyPlace, 0);
+    request.write.half = line.has("half");
+    request.write.compression = readCompression(line);
+    return request;
+}
+
+void writeFit(CommandRun& run, AtomicFile& output, const FitOutput& request,
+              const FittedSurface& fitted) {
+    if (request.kind == FitOutput::Kind::Density) return writeSolid(run, output, request, fitted);
+    const BsplineSurface& surface = fitted.surface;
+    const int red = redColumn(fitted.names);
+    const std::array<int, 2> samples = samplesOf(surface, request.samples);
+    run.writeOutput(output, [&](AtomicFile& file) {
+        switch (request.kind) {
+            case FitOutput::Kind::Patches:
+                return writeBezierPatches(file, surface, 0, run.progress());
+            case FitOutput::Kind::Samples:
+                return writeSamples(file, surface, samples, run.progress());
+            case FitOutput::Kind::Picture:
+                return writeImage(file, heightFieldImage(surface, samples, 0, red),
+                                  {.color = red >= 0}, run.progress());
+            default:
+                return writeMesh(file, heightFieldMesh(surface, samples, 0, red), run.progress());
+        }
+    });
+}
+
+}  // namespace bandvox::app

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace bandvox {
+
+/// A symmetric matrix by rows; the neighbours of a row rise, and hold the row itself.
+struct SparseRows {
+    std::vector<std::size_t> start{0};
+    std::vector<std::uint32_t> neighbor;
+    std::vector<double> entry;
+
+    std::size_t size() const { return start.size() - 1; }
+};
+
+/// The incomplete Cholesky factor of blocks on the diagonal of a positive definite matrix, without
+/// entries where the matrix has none. What two rows in a block have nearly in common it resolves,
+/// which scaling by the diagonal does not.
+class IncompleteFactor {
+  public:
+    /// Keeps a reference to the matrix's shape.
+    explicit IncompleteFactor(const SparseRows& matrix);
+
+    /// y = M^-1 x.
+    void solve(std::span<const double> x, std::span<double> y) const;
+
+  private:
+    void factorRow(std::size_t row, std::size_t first);
+
+    const SparseRows& mMatrix;
+    std::vector<double> mEntry;            // of the factor, where the matrix's are
+    std::vector<std::uint32_t> mBegin;     // of each row's entries in its block, after its start
+    std::vector<std::uint32_t> mDiagonal;  // after its start
+};
+
+}  // namespace bandvox

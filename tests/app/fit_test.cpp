@@ -1,0 +1,224 @@
+// What the fit command makes of tables, and which it refuses.
+
+#include "run_command.h"
+
+#include <bandvox/grid/density_grid.h>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <openvdb/openvdb.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace bandvox::app_test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+double heightAt(double x, double y) {
+    return 1 + 0.3 * std::sin(3 * x) * std::cos(2 * y);
+}
+
+std::string tableOfHeights() {
+    std::ostringstream text;
+    text.precision(17);
+    text << "x,y,height,r,g,b\n";
+    for (int i = 0; i < 300; ++i) {
+        const double x = std::fmod(i * 0.754877666246693, 1.0);
+        const double y = std::fmod(i * 0.569840290998053, 1.0);
+        text << x << "," << y << "," << heightAt(x, y) << "," << x << "," << y << ",0.5\n";
+    }
+    return text.str();
+}
+
+class Fit : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        sFolder = std::make_unique<TemporaryFolder>();
+        writeText(*sFolder / "heights.csv", tableOfHeights());
+    }
+    static void TearDownTestSuite() { sFolder.reset(); }
+
+    static RunResult fit(Names arguments) {
+        arguments.insert(arguments.begin(), "fit");
+        return runBandvox(std::move(arguments), {.folder = sFolder->path()});
+    }
+
+    /// Runs a fit of a table that cannot be used; nothing may be written.
+    static void expectRefused(const std::string& name, const std::string& text,
+                              const std::string& words, int status = 3, Names more = {}) {
+        const TemporaryFolder folder;
+        writeText(folder / name, text);
+        Names arguments{"fit", name, "-o", "out.bpt"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const RunResult result = runBandvox(arguments, {.folder = folder.path()});
+        EXPECT_EQ(result.status, status) << text.substr(0, 60);
+        EXPECT_NE(result.err.find(words), std::string::npos) << result.err;
+        EXPECT_EQ(folder.contents(), Names{name});
+    }
+
+    static std::string read(const std::string& name) {
+        std::ifstream stream(*sFolder / name, std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+
+    static std::unique_ptr<TemporaryFolder> sFolder;
+};
+
+std::unique_ptr<TemporaryFolder> Fit::sFolder;
+
+TEST_F(Fit, WritesSamplesThatAreTheFunction) {
+    const RunResult result = fit({"heights.csv", "-o", "heights.npy", "--samples", "41",
+                                  "--rectangle", "0,0,1,1", "--stats", "stats.json"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const std::string bytes = read("heights.npy");
+    ASSERT_EQ(bytes.size(), 128 + 41 * 41 * 4 * sizeof(double));
+    EXPECT_NE(bytes.find("(41, 41, 4)"), std::string::npos);
+    for (std::size_t i = 4; i < 37; ++i) {
+        for (std::size_t j = 4; j < 37; ++j) {
+            std::array<double, 4> values{};
+            std::memcpy(values.data(), bytes.data() + 128 + (i * 41 + j) * sizeof(values),
+                        sizeof(values));
+            const double x = static_cast<double>(i) / 40;
+            const double y = static_cast<double>(j) / 40;
+            EXPECT_NEAR(values[0], heightAt(x, y), 1e-3);
+            EXPECT_NEAR(values[1], x, 1e-3);
+            EXPECT_NEAR(values[2], y, 1e-3);
+        }
+    }
+    const auto stats = nlohmann::json::parse(read("stats.json"));
+    EXPECT_EQ(stats["counts"]["points"], 300);
+    EXPECT_LE(stats["counts"]["levels"].back()["largest"], 1e-12);
+}
+
+TEST_F(Fit, WritesPatchesMeshesAndPictures) {
+    ASSERT_EQ(
+        fit({"heights.csv", "-o", "surface.bpt", "--max-level", "3", "--tolerance", "0.1"}).status,
+        0);
+    std::istringstream patches(read("surface.bpt"));
+    int count = 0;
+    patches >> count;
+    EXPECT_GE(count, 4);
+    double number = 0;
+    int numbers = 0;
+    while (patches >> number) ++numbers;
+    EXPECT_EQ(numbers, count * (2 + 16 * 3));
+
+    for (const std::string name : {"surface.obj", "surface.ply", "surface.glb"}) {
+        EXPECT_EQ(fit({"heights.csv", "-o", name, "--samples", "20"}).status, 0) << name;
+    }
+    // A point, and its colours, sRGB.
+    EXPECT_NE(read("surface.obj").find("\nv "), std::string::npos);
+    const RunResult picture = fit({"heights.csv", "-o", "surface.exr", "--samples", "33"});
+    EXPECT_EQ(picture.status, 0) << picture.err;
+    EXPECT_GT(read("surface.exr").size(), 1000U);
+}
+
+TEST_F(Fit, WritesTheSolidUnderTheSurface) {
+    const RunResult result = fit(
+        {"heights.csv", "-o", "solid.vdb", "-r", "40", "--base", "0", "--rectangle", "0,0,1,1"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    openvdb::initialize();
+    const auto grids = readVdb(*sFolder / "solid.vdb");
+    ASSERT_EQ(grids.size(), 1U);
+    const auto density = openvdb::gridPtrCast<openvdb::FloatGrid>(grids[0]);
+    // The integral of the function over the square.
+    const double volume = 1 + 0.3 * (1 - std::cos(3.0)) / 3 * std::sin(2.0) / 2;
+    EXPECT_NEAR(densityIntegral(*density), volume, 1e-4);
+    EXPECT_LE(densityMetadata(*density)->closureError, 1e-4);
+}
+
+TEST_F(Fit, LeavesDetailAway) {
+    ASSERT_EQ(fit({"heights.csv", "-o", "coarse.bpt", "--levels", "1..2"}).status, 0);
+    EXPECT_EQ(read("coarse.bpt").substr(0, 3), "16\n");
+    EXPECT_EQ(fit({"heights.csv", "-o", "none.bpt", "--levels", "30..31"}).status, 2);
+    EXPECT_EQ(fit({"heights.csv", "-o", "none.bpt", "--levels", "3..2"}).status, 2);
+}
+
+TEST_F(Fit, SaysIfTheToleranceIsNotReached) {
+    const RunResult result =
+        fit({"heights.csv", "-o", "not.bpt", "--max-level", "1", "--tolerance", "1e-9"});
+    EXPECT_EQ(result.status, 4);
+    EXPECT_NE(result.err.find("--tolerance"), std::string::npos) << result.err;
+    EXPECT_EQ(fit({"heights.csv", "-o", "warned.bpt", "--max-level", "1"}).status, 0);
+    EXPECT_EQ(fit({"heights.csv", "-o", "not.bpt", "--max-level", "1", "--strict"}).status, 4);
+}
+
+TEST_F(Fit, TakesColumnsByNameAndNumber) {
+    writeText(*sFolder / "mixed.txt", "time;lat;lon;depth\n9;0;0;1\n9;1;0;2\n9;0;1;3\n9;1;1;5\n");
+    EXPECT_EQ(fit({"mixed.txt", "-o", "mixed.bpt", "--columns", "lon,lat,depth"}).status, 0);
+    EXPECT_EQ(fit({"mixed.txt", "-o", "mixed.bpt", "--columns", "2,3,4"}).status, 0);
+    const RunResult unknown = fit({"mixed.txt", "-o", "mixed.bpt", "--columns", "lon,lat,high"});
+    EXPECT_EQ(unknown.status, 2);
+    EXPECT_NE(unknown.err.find("'high'"), std::string::npos) << unknown.err;
+}
+
+TEST_F(Fit, RefusesBadTables) {
+    expectRefused("t.csv", "x,y,z\n0,0,1\n1,zero,2\n0,1,3\n", "line 3 has \"zero\"");
+    expectRefused("t.csv", "0,0,1\n1,0\n0,1,3\n", "line 2 has 2 columns");
+    expectRefused("t.csv", "0,0,1\n1,0,nan\n0,1,3\n", "line 2 has nan as value");
+    expectRefused("t.csv", "0,0,1\n1,0,1e999\n0,1,3\n", "line 2 has inf as value");
+    expectRefused("t.csv", "1 2 3\n", "all at (1, 2)");
+    expectRefused("t.xyz", "1 2 3\n1 2 3\n1 2 3\n", "all at (1, 2)");
+    expectRefused("t.csv", "", "no points");
+    expectRefused("t.csv", "1,2\n3,4\n", "2 columns");
+    expectRefused("t.csv", "0,0,1\n1,0,2\n0,1,3\n1,0,9\n", "(1, 0)");
+    expectRefused("t.csv", "0,0,1\n1,0,2\n0,2,3\n", "outside the rectangle", 3,
+                  {"--rectangle", "0,0,1,1"});
+    expectRefused("t.csv", "0,0,1\n1,0,2\n0,2,3\n", "--rectangle", 2, {"--rectangle", "0,0,0,1"});
+    expectRefused("t.foo", "0,0,1\n", "unknown kind");
+    expectRefused("t.npy", "not an array", "no .npy file");
+    std::string announced("\x93NUMPY\x01\x00\x76\x00", 10);
+    announced += "{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000, 3), }";
+    announced.resize(128, ' ');
+    expectRefused("t.npy", announced + std::string(240, '\0'), "announces 1000000000 rows");
+}
+
+TEST_F(Fit, ReadsArraysOfNumpy) {
+    std::string bytes("\x93NUMPY\x01\x00\x76\x00", 10);
+    bytes += "{'descr': '<f8', 'fortran_order': False, 'shape': (4, 3), }";
+    bytes.resize(128, ' ');
+    for (const double number : {0.0, 0.0, 1.0, 1.0, 0.0, 2.0, 0.0, 1.0, 3.0, 1.0, 1.0, 5.0}) {
+        bytes.append(reinterpret_cast<const char*>(&number), sizeof(number));
+    }
+    writeText(*sFolder / "four.npy", bytes);
+    const RunResult result = fit({"four.npy", "-o", "four.bpt"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.err.find("4 points"), std::string::npos) << result.err;
+}
+
+TEST_F(Fit, RunsWhatItsPageShows) {
+    const std::string page = readText(std::filesystem::path(BANDVOX_SOURCE_DIR) / "docs/fit.md");
+    const std::string fence = "```sh runnable\n";
+    const std::size_t begin = page.find(fence);
+    ASSERT_NE(begin, std::string::npos);
+    const std::size_t start = begin + fence.size();
+    const std::string block = page.substr(start, page.find("\n```", start) + 1 - start);
+    const std::string path =
+        "PATH=" + std::filesystem::path(BANDVOX_EXECUTABLE).parent_path().string() + ":$PATH\n";
+    const TemporaryFolder folder;
+    const RunResult result =
+        runProgram({"/bin/sh", "-e", "-c", path + block}, {.folder = folder.path()});
+    EXPECT_EQ(result.status, 0) << result.err;
+    for (const char* name :
+         {"surface.bpt", "surface.npy", "surface.ply", "surface.exr", "solid.vdb", "simple.bpt"}) {
+        EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+    }
+}
+
+TEST_F(Fit, IsTheSameForAnyNumberOfThreads) {
+    ASSERT_EQ(fit({"heights.csv", "-o", "one.npy", "--threads", "1"}).status, 0);
+    ASSERT_EQ(fit({"heights.csv", "-o", "three.npy", "--threads", "3"}).status, 0);
+    EXPECT_EQ(read("one.npy"), read("three.npy"));
+}
+
+}  // namespace
+}  // namespace bandvox::app_test
