@@ -6,12 +6,18 @@
 
 #include <bandvox/core/error.h>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
+#include <cstring>
+#include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace bandvox {
 
@@ -170,6 +176,9 @@ class OpenImageIoOutput final : public SliceOutput {
           mOutput(OIIO::ImageOutput::create("slices" + info.extension)) {
         if (!mOutput) throw Error(ErrorKind::Runtime, OIIO::geterror());
         mOutput->threads(info.threads);
+        // The library's writer of .png files says nothing of a disk that is full: it writes to
+        // memory.
+        if (info.extension == ".png") mBytes.emplace();
         mSpec.channelnames = {"Y"};
         // What is written are numbers, not colours.
         mSpec.attribute("oiio:ColorSpace", "Linear");
@@ -192,6 +201,7 @@ class OpenImageIoOutput final : public SliceOutput {
 
     void write(const char* values) override {
         const bool isFirst = mPages++ == 0;
+        if (mBytes) mOutput->set_ioproxy(&*mBytes);
         if (!mOutput->open(
                 mPath, mSpec,
                 isFirst ? OIIO::ImageOutput::Create : OIIO::ImageOutput::AppendSubimage) ||
@@ -202,13 +212,24 @@ class OpenImageIoOutput final : public SliceOutput {
 
     void close() override {
         if (!mOutput->close()) fail();
+        if (mBytes) writeBytes();
     }
 
   private:
     [[noreturn]] void fail() { throw Error(ErrorKind::Runtime, mOutput->geterror()); }
 
+    void writeBytes() {
+        const std::vector<unsigned char>& bytes = mBytes->buffer();
+        std::ofstream stream(mPath, std::ios::binary);
+        stream.write(reinterpret_cast<const char*>(bytes.data()),
+                     static_cast<std::streamsize>(bytes.size()));
+        stream.close();
+        if (!stream) throw Error(ErrorKind::Runtime, std::strerror(errno));
+    }
+
     std::string mPath;
     OIIO::ImageSpec mSpec;
+    std::optional<OIIO::Filesystem::IOVecOutput> mBytes;  // of a .png file
     std::unique_ptr<OIIO::ImageOutput> mOutput;
     int mPages = 0;
 };

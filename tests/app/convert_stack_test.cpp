@@ -237,6 +237,19 @@ TEST_F(ConvertStack, SparesWhatItReads) {
     expectSameAsSample("scan");
 }
 
+TEST_F(ConvertStack, AFullDiskLeavesTheOldSlices) {
+    for (const char* pattern : {"s.##.png", "s.##.tif", "s.##.exr"}) {
+        ASSERT_EQ(convert({"shape:sphere", "-o", pattern, "-r", "40"}).status, 0);
+        const std::string first = std::string("s.20") + std::string(pattern).substr(4);
+        const std::string before = readText(mFolder / first);
+        ASSERT_GT(before.size(), 500U);
+        const RunResult full = runBandvox({"convert", "shape:cube", "-o", pattern, "-r", "40"},
+                                          {.folder = mFolder.path(), .largestFile = 200});
+        EXPECT_EQ(full.status, 1) << full.err;
+        EXPECT_EQ(readText(mFolder / first), before) << pattern;
+    }
+}
+
 TEST_F(ConvertStack, RefusesWhatDoesNotGoTogether) {
     expectDone({"a.npy", "-o", "a.vdb"});
     const std::vector<std::pair<Words, Words>> cases{

@@ -176,6 +176,16 @@ TEST_F(ArrayFile, ReadsNrrdInsideAndBeside) {
     }
     expectValues(
         write("many.nhdr", head + "encoding: raw\nendian: little\ndata file: s%02d.raw 3 6 1\n"));
+    // Numbers whose count is more than an int holds.
+    for (const char* pattern : {"s%d.raw 0 -2147483648 -1", "s%d.raw 0 2147483647 1",
+                                "s%d.raw 2147483646 2147483647 1"}) {
+        std::string header = head;
+        header += "encoding: raw\nendian: little\ndata file: ";
+        header += pattern;
+        const auto path = write("far.nhdr", header + "\n");
+        std::vector<float> values(60);
+        EXPECT_THROW(openArray(path)->readSlices(values), Error) << pattern;
+    }
     expectValues(write("list.nhdr", head +
                                         "encoding: raw\nendian: little\ndata file: LIST\ns03.raw\n"
                                         "s04.raw\ns05.raw\ns06.raw\n"));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -130,10 +131,11 @@ std::vector<std::string> patternFiles(const std::filesystem::path& path, const s
     words >> pattern >> low >> high >> step;
     const std::size_t percent = pattern.find('%');
     const std::size_t d = percent == std::string::npos ? percent : pattern.find('d', percent);
+    const std::int64_t steps = step == 0 ? -1 : (std::int64_t(high) - low) / step;
     const bool isPattern = words && d != std::string::npos && step != 0 &&
                            pattern.find_first_not_of("0123456789", percent + 1) == d &&
                            d - percent <= 3 && pattern.find('%', d) == std::string::npos &&
-                           (high - low) / step >= 0 && (high - low) / step < (1 << 20);
+                           steps >= 0 && steps < (1 << 20);
     if (!isPattern)
         failArray(path, "its data files are '" + text.substr(0, 100) +
                             "'; expected a "
@@ -141,8 +143,8 @@ std::vector<std::string> patternFiles(const std::filesystem::path& path, const s
     const std::string digits = pattern.substr(percent + 1, d - percent - 1);
     const int width = digits.empty() ? 0 : std::stoi(digits);
     std::vector<std::string> files;
-    for (int i = low; step > 0 ? i <= high : i >= high; i += step) {
-        std::string number = std::to_string(i);
+    for (std::int64_t i = 0; i <= steps; ++i) {
+        std::string number = std::to_string(low + i * step);
         const bool zeros = !digits.empty() && digits[0] == '0';
         while (static_cast<int>(number.size()) < width) number.insert(0, 1, zeros ? '0' : ' ');
         files.push_back(pattern.substr(0, percent) + number + pattern.substr(d + 1));
