@@ -246,6 +246,39 @@ TEST(FitSurface, TakesClustersAndFlatRectangles) {
     EXPECT_NEAR(surface.value(500, 0.5), std::sin(12.5) + 0.05, 0.05);
 }
 
+TEST(FitSurface, NoLevelMakesItWorse) {
+    // A crowd, and one far away.
+    ScatteredPoints points;
+    points.columns = 1;
+    for (int i = 0; i < 200; ++i) {
+        const double x = std::fmod(i * 0.754877666246693, 1.0);
+        const double y = std::fmod(i * 0.569840290998053, 1.0);
+        points.x.push_back(x);
+        points.y.push_back(y);
+        points.values.push_back(std::sin(5 * x) * std::cos(4 * y) + x);
+    }
+    points.x.push_back(1000);
+    points.y.push_back(1000);
+    points.values.push_back(0);
+    FitSurfaceOptions options;
+    options.maxLevel = 10;
+    const SurfaceFit fit = fitSurface(points, options);
+    ASSERT_FALSE(fit.report.empty());
+    EXPECT_LE(fit.report.back().largest, 1);
+    for (std::size_t i = 1; i < fit.report.size(); ++i) {
+        EXPECT_LE(fit.report[i].largest, 1.5 * fit.report[i - 1].largest) << i;
+    }
+}
+
+TEST(FitSurface, RefusesARangeThatIsNoNumber) {
+    ScatteredPoints points;
+    points.columns = 1;
+    points.x = {0, 1, 0, 1};
+    points.y = {0, 0, 1, 1};
+    points.values = {1.2e308, -1.2e308, 0, 1};
+    EXPECT_THROW(fitSurface(points), Error);
+}
+
 TEST(FitSurface, AveragesDuplicatesOrRefusesThem) {
     ScatteredPoints points = sampled(franke33(), bump);
     points.x.push_back(points.x[4]);

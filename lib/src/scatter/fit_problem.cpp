@@ -2,9 +2,12 @@
 
 #include "scatter/surface_energy.h"
 
+#include <bandvox/core/error.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 
 namespace bandvox {
 namespace {
@@ -49,6 +52,12 @@ UnitPoints makeUnitPoints(const MergedPoints& merged, const Rectangle& rectangle
             sum += value / static_cast<double>(points.size());
         }
         const double range = high > low ? high - low : 1;
+        if (!std::isfinite(range) || !std::isfinite(sum)) {
+            throw Error(ErrorKind::Input,
+                        "the values of column " + std::to_string(column + 1) +
+                            " are so far apart that their range is no number; expected less than "
+                            "1.8e308");
+        }
         auto& values = unit.values.emplace_back(points.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
             values[i] = (points.value(unit.points.origin[i], column) - sum) / range;

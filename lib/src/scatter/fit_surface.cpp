@@ -156,7 +156,9 @@ void Fitting::measure(const NetPoints& points, const Columns& nets, const Column
         points.evaluate(nets[c], found);
         for (std::size_t i = 0; i < points.size(); ++i) {
             mLacking[c][i] = wanted[c][i] - found[i];
-            mLargest = std::max(mLargest, std::abs(mLacking[c][i]));
+            const double lacking = std::abs(mLacking[c][i]);
+            // So that what is no number is not passed over.
+            if (!(lacking <= mLargest)) mLargest = lacking;
         }
         squares += dotProduct(mLacking[c], mLacking[c]);
     }
@@ -234,8 +236,14 @@ void Fitting::mend(int level) {
         constexpr int kSteps = 400;
         mender.addTo(net, mender.multipliers(lacking, 0.7 * mOptions.tolerance, kSteps, mProgress));
     }
-    measure(NetPoints(mUnit.points, shape), bumps, Columns(mLacking));
-    keepAlone(level, shape, bumps);
+    const Columns before = mLacking;
+    const double largest = mLargest, rms = mRms;
+    measure(NetPoints(mUnit.points, shape), bumps, before);
+    // Of more points in a cell than it has control points the sizes may be anything.
+    if (mLargest < largest) return keepAlone(level, shape, bumps);
+    mLacking = before;
+    mLargest = largest;
+    mRms = rms;
 }
 
 /// The mean square of what is lacking, in parts of that which the noise makes expect.
