@@ -189,6 +189,8 @@ DensityResult densityOn(CommandRun& run, const GridSolid& solid,
         makeGridSurface(solid.name, solid.grid, {solid.iso, toLattice}, run.progress());
     DensityResult result = surfaceToDensity(*source, options, run.progress());
     result.grid->setTransform(target.copy());
+    // On a turned lattice its last digits are others, and parts are summed up there.
+    result.metadata.gridVolume = densityIntegral(*result.grid);
     setPlaceMetadata(*result.grid, placeMetadata(*solid.grid));
     return result;
 }

@@ -228,13 +228,7 @@ bool finishGrid(CommandRun& run, const openvdb::GridBase::Ptr& converted,
         if (const auto iso = isoFor(run, request.iso, density)) setIso(grid, *iso);
     }
     auto* floats = dynamic_cast<openvdb::FloatGrid*>(&grid);
-    if (!floats || !request.write.half) return isDensity;
-    const double change = roundToHalf(*floats);
-    if (auto metadata = densityMetadata(grid)) {
-        metadata->storageError = std::max(metadata->storageError, change);
-        metadata->gridVolume = densityIntegral(*floats);
-        setDensityMetadata(grid, *metadata);
-    }
+    if (floats && request.write.half) roundAndRestate(*floats);
     return isDensity;
 }
 

@@ -31,8 +31,8 @@ const CommandTable& fitTable() {
             "fit",
             "Fit a smooth surface to values at scattered places.",
             "Reads a table of places and values, x y and a value or several in each line, and "
-            "makes "
-            "of them the smoothest sum of B-spline surfaces that has these values. It is twice "
+            "makes of them the smoothest sum of B-spline surfaces that has these values. It is "
+            "twice "
             "continuously differentiable, and written as Bézier patches, samples, a mesh, a "
             "picture, or the solid under it.",
             {{"POINTS", "A table: .csv .xyz .txt, or .npy with a row for each point."}},
@@ -43,8 +43,8 @@ const CommandTable& fitTable() {
                  "What the surface covers; all points have to be in it.", "Points"},
                 {"tolerance", 0, "T", "1e-12",
                  "How far the surface may be off at a point, in parts of the values' range, 0 to "
-                 "1. "
-                 "More gives a coarser net. If it is given and not reached, the status is 4.",
+                 "1. More gives a coarser net. If it is given and not reached, or the surface is "
+                 "off by more than 0.01 and --max-level was not given, the status is 4.",
                  "Surface"},
                 {"smooth", 0, "NOISE", "",
                  "The values have errors of this standard deviation: the smoothest surface that "
@@ -57,8 +57,7 @@ const CommandTable& fitTable() {
                  "Surface"},
                 {"tension", 0, "T", "the most likely",
                  "The surface is stiff within 1/T, and like a membrane farther off, in units of "
-                 "the "
-                 "root of the rectangle's area; 0.01 to 10000.",
+                 "the root of the rectangle's area; 0.01 to 10000.",
                  "Surface"},
             },
             {
@@ -175,7 +174,8 @@ void judgeFit(CommandRun& run, const FitRequest& request, const SurfaceFit& fit)
     message += " at most, by --tolerance";
     // As where a crowd of points and one far away share a net: what is between them is anything.
     constexpr double kUseless = 0.01;
-    if (request.hasTolerance || !(largest <= kUseless)) throw Error(ErrorKind::Result, message);
+    const bool isUseless = !request.fit.maxLevel && !(largest <= kUseless);
+    if (request.hasTolerance || isUseless) throw Error(ErrorKind::Result, message);
     run.warn({message}, ErrorKind::Result);
 }
 

@@ -25,7 +25,7 @@ void addLevels(CommandRun& run, const SolidOutput& output, const DensityOptions&
     options.filter = density.filter;
     options.tolerance = std::max(density.tolerance, options.tolerance);
     for (const auto& level : makeDetailLevels(grid, output.levels, options, run.progress())) {
-        if (output.write.half) roundToHalf(*level);
+        if (output.write.half) roundAndRestate(*level);
         run.say("level    " + level->getName() + ": " +
                 formatCount(static_cast<std::int64_t>(level->activeVoxelCount()), "active voxel",
                             "active voxels") +

@@ -250,6 +250,17 @@ TEST_F(ConvertStack, AFullDiskLeavesTheOldSlices) {
     }
 }
 
+TEST_F(ConvertStack, RefusesVoxelsThatTransformsCannotHold) {
+    ASSERT_EQ(convert({"a.npy", "-o", "a.vdb"}).status, 0);
+    for (const Words& words : {Words{"a.npy", "-o", "no.vdb", "--spacing", "1e-6"},
+                               {"a.npy", "-o", "no.vdb", "--spacing", "1e-6", "--threshold", "9"},
+                               {"a.vdb", "-o", "no.vdb", "--voxel-size", "1e-6"}}) {
+        const RunResult result = convert(words);
+        EXPECT_EQ(result.status, words[0] == "a.vdb" ? 2 : 3) << result.err;
+        EXPECT_NE(result.err.find("no less than 1.44e-05"), std::string::npos) << result.err;
+    }
+}
+
 TEST_F(ConvertStack, RefusesWhatDoesNotGoTogether) {
     expectDone({"a.npy", "-o", "a.vdb"});
     const std::vector<std::pair<Words, Words>> cases{

@@ -101,6 +101,12 @@ TEST_F(ShardCommand, PartsOfOtherSourcesMergeToTheWhole) {
         0);
     makeBoth({"sdf.vdb", "--as", "density", "--tile", "32"});
     expectSame();
+    const openvdb::GridPtrVec turned = readVdb(mFolder / "sdf.vdb");
+    turned.front()->transform().postRotate(0.4, openvdb::math::X_AXIS);
+    turned.front()->transform().postRotate(0.7, openvdb::math::Z_AXIS);
+    writeVdb(mFolder / "turned.vdb", {turned.front()});
+    makeBoth({"turned.vdb", "--as", "density", "--tile", "32"});
+    expectSame();
 }
 
 TEST_F(ShardCommand, RefusesWhatIsNoWhole) {

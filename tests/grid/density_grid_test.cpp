@@ -179,6 +179,22 @@ TEST_F(DensityGridFile, RoundToHalfIsWhatTheFileGivesBack) {
     EXPECT_EQ(roundToHalf(*rounded), 0);
 }
 
+TEST(DensityMetadata, IsRestatedWhenValuesAreRounded) {
+    auto grid = openvdb::FloatGrid::create(0.0F);
+    const float value = 0.123456789F;
+    grid->tree().setValueOn(openvdb::Coord(0), value);
+    roundAndRestate(*grid);
+    EXPECT_FALSE(densityMetadata(*grid)) << "it was none";
+    grid->tree().setValueOn(openvdb::Coord(0), value);
+    setDensityMetadata(*grid, {});
+    roundAndRestate(*grid);
+    const auto metadata = densityMetadata(*grid);
+    const float rounded = grid->tree().getValue(openvdb::Coord(0));
+    EXPECT_NE(rounded, value);
+    EXPECT_DOUBLE_EQ(metadata->storageError, std::abs(double(rounded) - value));
+    EXPECT_DOUBLE_EQ(metadata->gridVolume, rounded);
+}
+
 TEST_F(DensityGridFile, PlaceThatCannotBeWrittenIsAnError) {
     try {
         writeVdb("/proc/bandvox.vdb", {sampleGrid()});

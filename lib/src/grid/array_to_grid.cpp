@@ -1,3 +1,5 @@
+#include "grid/array_lattice.h"
+
 #include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>
 #include <bandvox/core/parallel.h>
@@ -113,6 +115,7 @@ void addSlab(const Slab& slab, const ArrayGridOptions& options, openvdb::FloatTr
 openvdb::FloatGrid::Ptr arrayToGrid(ArraySource& source, const ArrayGridOptions& options,
                                     Progress& progress) {
     const ArrayInfo& info = source.info();
+    const openvdb::math::Transform::Ptr lattice = latticeOf(info);
     if (!std::isfinite(options.background) || !(options.tolerance >= 0)) {
         throw Error(ErrorKind::Usage,
                     "the background is a number, and what is as near to it is not below 0");
@@ -134,7 +137,7 @@ openvdb::FloatGrid::Ptr arrayToGrid(ArraySource& source, const ArrayGridOptions&
         progress.advance();
     }
     openvdb::tools::pruneTiles(grid->tree(), 0.0F, /*threaded=*/false);
-    grid->setTransform(openvdb::math::Transform::createLinearTransform(info.toWorld));
+    grid->setTransform(lattice);
     grid->setName("density");
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     setSourceMetadata(*grid, std::filesystem::path(info.name).filename().string());

@@ -1,4 +1,5 @@
 #include "core/words.h"
+#include "grid/array_lattice.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>
@@ -199,6 +200,7 @@ openvdb::FloatGrid::Ptr arrayToSolidGrid(ArraySource& source, const ArraySolidOp
                                          Progress& progress) {
     requireValid(options);
     const ArrayInfo& info = source.info();
+    const openvdb::math::Transform::Ptr lattice = latticeOf(info);
     const double sliceBytes = double(info.valuesPerSlice()) * sizeof(float);
     requireMemory(kSlicesHeld * sliceBytes, "ten slices of the array");
 
@@ -237,7 +239,7 @@ openvdb::FloatGrid::Ptr arrayToSolidGrid(ArraySource& source, const ArraySolidOp
                                            " and " + inFull(options.high));
     }
     openvdb::tools::pruneTiles(grid->tree(), 0.0F, /*threaded=*/false);
-    grid->setTransform(openvdb::math::Transform::createLinearTransform(info.toWorld));
+    grid->setTransform(lattice);
     grid->setName("density");
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     setSourceMetadata(*grid, std::filesystem::path(info.name).filename().string());

@@ -36,4 +36,13 @@ double roundToHalf(openvdb::FloatGrid& grid) {
     return largest;
 }
 
+void roundAndRestate(openvdb::FloatGrid& grid) {
+    const double change = roundToHalf(grid);
+    auto metadata = densityMetadata(grid);
+    if (!metadata) return;
+    metadata->storageError = std::max(metadata->storageError, change);
+    metadata->gridVolume = densityIntegral(grid);
+    setDensityMetadata(grid, *metadata);
+}
+
 }  // namespace bandvox

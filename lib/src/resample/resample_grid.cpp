@@ -1,3 +1,4 @@
+#include "core/smallest_voxel.h"
 #include "core/words.h"
 #include "core/worker_pool.h"
 #include "resample/block_filter.h"
@@ -253,6 +254,11 @@ openvdb::math::Transform::Ptr uniformLattice(const openvdb::GridBase& grid, doub
     if (!(voxelSize > 0 && std::isfinite(voxelSize))) {
         throw Error(ErrorKind::Usage,
                     "the side of a voxel is " + inShort(voxelSize) + "; it must be above 0");
+    }
+    if (voxelSize < kSmallestVoxel) {
+        throw Error(ErrorKind::Usage, "the side of a voxel is " + inShort(voxelSize) +
+                                          ", and OpenVDB's transforms take no less than " +
+                                          inShort(kSmallestVoxel));
     }
     requireLinear(grid.transform(), ErrorKind::Input);
     openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();

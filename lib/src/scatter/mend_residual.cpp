@@ -1,5 +1,7 @@
 #include "scatter/mend_residual.h"
 
+#include <bandvox/core/memory.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -93,6 +95,15 @@ std::vector<std::size_t> countProducts(const SortedPoints& points, const NetShap
 
 }  // namespace
 
+std::size_t mostNeighbors(const SortedPoints& points, const NetShape& shape) {
+    const std::vector<std::size_t> start = countProducts(points, shape, CellRows(points, shape));
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        most = std::max(most, start[i + 1] - start[i]);
+    }
+    return most;
+}
+
 ResidualMender::ResidualMender(const SortedPoints& points, const NetShape& shape)
     : mNetPoints(points, shape), mProducts(multiplyNeighbors(points, mNetPoints)) {}
 
@@ -101,6 +112,10 @@ SparseRows ResidualMender::multiplyNeighbors(const SortedPoints& points, const N
     const CellRows rows(points, shape);
     SparseRows products;
     products.start = countProducts(points, shape, rows);
+    // Factored they are there twice.
+    constexpr double kBytesOfProduct = sizeof(std::uint32_t) + 2 * sizeof(double);
+    requireMemory(kBytesOfProduct * static_cast<double>(products.start.back()),
+                  "a level of the fit");
     products.neighbor.resize(products.start.back());
     products.entry.resize(products.start.back());
     forPieces(points.size(), kPointsInPiece, [&](std::size_t begin, std::size_t end) {

@@ -10,6 +10,9 @@
 
 namespace bandvox {
 
+/// How many points are at most up to three cells away from one, itself included.
+std::size_t mostNeighbors(const SortedPoints& points, const NetShape& shape);
+
 /// What a net without a margin has to add so that points get the values they lack: of all the nets
 /// that do, the one whose control points are least in the sum of squares. Where cells are narrower
 /// than the points are apart, each point thus gets a small bump of its own.

@@ -78,6 +78,9 @@ double densityIntegral(const openvdb::FloatGrid& grid);
 /// Returns the largest change, density: up to 2^-12 below 1, 2^-11 above.
 double roundToHalf(openvdb::FloatGrid& grid);
 
+/// The same, and says so in the grid if that is a density.
+void roundAndRestate(openvdb::FloatGrid& grid);
+
 /// How a VDB file is written.
 struct VdbWriteOptions {
     bool half = false;  ///< 16-bit values
