@@ -4,6 +4,7 @@
 #include "words.h"
 
 #include <bandvox/core/error.h>
+#include <bandvox/source/read_mesh.h>
 #include <bandvox/source/shapes.h>
 
 #include <nlohmann/json.hpp>
