@@ -28,6 +28,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -215,6 +216,39 @@ openvdb::FloatGrid::Ptr readArray(CommandRun& run, const VolumeRequest& request)
     return arrayToGrid(*source, {request.background, 0}, run.progress());
 }
 
+// Levels of detail that a file has already are made anew.
+void leaveLevelsAway(CommandRun& run, openvdb::GridPtrVec& grids) {
+    const auto isLevel = [&](const openvdb::GridBase::Ptr& grid) {
+        const std::string name = grid->getName();
+        const std::size_t mark = name.rfind("_level_");
+        if (mark == std::string::npos || !(*grid)["MultiResGrid_Level"]) return false;
+        return std::any_of(grids.begin(), grids.end(), [&](const openvdb::GridBase::Ptr& other) {
+            return other->getName() == name.substr(0, mark);
+        });
+    };
+    openvdb::GridPtrVec kept;
+    std::copy_if(grids.begin(), grids.end(), std::back_inserter(kept),
+                 [&](const openvdb::GridBase::Ptr& grid) { return !isLevel(grid); });
+    if (kept.size() < grids.size()) {
+        run.say("levels   " +
+                formatCount(static_cast<std::int64_t>(grids.size() - kept.size()), "grid is",
+                            "grids are") +
+                " left away, which levels that are made anew replace");
+    }
+    grids = std::move(kept);
+}
+
+// Brings grids to another space of scans.
+void turnAll(CommandRun& run, const openvdb::GridPtrVec& grids, const std::string& space) {
+    for (const openvdb::GridBase::Ptr& grid : grids) {
+        turnToSpace(*grid, space);
+        if (!grid->isType<openvdb::Vec3SGrid>() || grid->getName().starts_with("Cd")) continue;
+        run.warn({"the vectors of the grid '" + grid->getName() +
+                  "' were left as they are: it says of them that they do not turn with the world"},
+                 ErrorKind::Input);
+    }
+}
+
 // The grids of the file that are asked for.
 openvdb::GridPtrVec readChosen(CommandRun& run, const VolumeRequest& request) {
     if (isStackInput(request.input)) {
@@ -234,9 +268,8 @@ openvdb::GridPtrVec readChosen(CommandRun& run, const VolumeRequest& request) {
     } else if (request.grid) {
         grids = {chooseGrid(grids, *request.grid, request.input)};
     }
-    for (const openvdb::GridBase::Ptr& grid : grids) {
-        if (!request.stack.space.empty()) turnToSpace(*grid, request.stack.space);
-    }
+    if (request.levels > 0) leaveLevelsAway(run, grids);
+    if (!request.stack.space.empty()) turnAll(run, grids, request.stack.space);
     return grids;
 }
 
@@ -250,6 +283,16 @@ void requireIsoHasMeaning(const VolumeRequest& request, const openvdb::GridPtrVe
                 "--iso is stored with densities, and '" + request.input +
                     "' holds level sets, whose surface is 0; expected --as level-set with it, for "
                     "that of a density made of them");
+}
+
+// Vectors are made whole, by the first machine; of them alone there is nothing to divide.
+void requireParts(const VolumeRequest& request, const openvdb::GridPtrVec& grids) {
+    const bool areVectors = std::all_of(grids.begin(), grids.end(), [](const auto& grid) {
+        return grid->template isType<openvdb::Vec3SGrid>();
+    });
+    if (request.resample.shard.isWhole() || !areVectors) return;
+    throw Error(ErrorKind::Usage, "--shard divides grids of numbers, and '" + request.input +
+                                      "' holds vectors only, which are made whole");
 }
 
 void setIso(openvdb::GridBase& grid, double iso) {
@@ -310,6 +353,7 @@ void convertVolume(ConvertJob& job) {
     openvdb::GridPtrVec grids = readChosen(run, request);
 
     requireIsoHasMeaning(request, grids);
+    requireParts(request, grids);
 
     openvdb::GridCPtrVec written;
     std::int64_t activeVoxels = 0;

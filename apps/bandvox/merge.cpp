@@ -151,14 +151,22 @@ openvdb::FloatGrid::Ptr chooseDensity(CommandRun& run, const openvdb::GridPtrVec
     return grid;
 }
 
+// Throws unless a grid may lie in one world with all that were read before it.
+void requireOneWorld(const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
+                     const openvdb::FloatGrid& grid, const MergeRequest& request) {
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+        const std::string place = placeDifference(*grids[i], grid);
+        if (place.empty()) continue;
+        throw Error(ErrorKind::Input, "'" + request.inputs[i] + "' and '" +
+                                          request.inputs[grids.size()] +
+                                          "' are not in one world: " + place);
+    }
+}
+
 // The grid on the lattice of the first.
 openvdb::FloatGrid::ConstPtr alignedTo(CommandRun& run, const openvdb::FloatGrid& first,
                                        const openvdb::FloatGrid::ConstPtr& grid,
                                        const std::string& input, const MergeRequest& request) {
-    if (const std::string place = placeDifference(first, *grid); !place.empty()) {
-        throw Error(ErrorKind::Input, "'" + request.inputs[0] + "' and '" + input +
-                                          "' are not in one world: " + place);
-    }
     const std::string difference = latticeDifference(first.transform(), grid->transform());
     if (difference.empty()) return grid;
     if (!request.resamples) {
@@ -218,6 +226,7 @@ void runMerge(const CommandLine& line) {
         }
         openvdb::FloatGrid::ConstPtr grid = chooseDensity(run, read, input, request);
         read.clear();
+        requireOneWorld(grids, *grid, request);
         if (!grids.empty()) grid = alignedTo(run, *grids.front(), grid, input, request);
         grids.push_back(grid);
     }

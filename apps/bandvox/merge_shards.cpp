@@ -104,7 +104,11 @@ openvdb::GridCPtrVec joinShardFiles(CommandRun& run, const std::vector<std::stri
         }
         written.push_back(joined.grid);
     }
-    written.insert(written.end(), gathered.whole.begin(), gathered.whole.end());
+    for (const auto& grid : gathered.whole) {
+        const auto whole = openvdb::ConstPtrCast<openvdb::GridBase>(grid->copyGrid());
+        forgetPart(*whole);
+        written.push_back(whole);
+    }
     run.count("grids", written.size());
     return written;
 }

@@ -19,11 +19,16 @@ namespace {
 
 constexpr int kLargestTile = 512;
 
-void addLevels(CommandRun& run, const SolidOutput& output, const DensityOptions& density,
-               const openvdb::FloatGrid::Ptr& grid, openvdb::GridCPtrVec& written) {
+ResampleOptions levelOptions(const DensityOptions& density) {
     ResampleOptions options;
     options.filter = density.filter;
     options.tolerance = std::max(density.tolerance, options.tolerance);
+    return options;
+}
+
+void addLevels(CommandRun& run, const SolidOutput& output, const DensityOptions& density,
+               const openvdb::FloatGrid::Ptr& grid, openvdb::GridCPtrVec& written) {
+    const ResampleOptions options = levelOptions(density);
     for (const auto& level : makeDetailLevels(grid, output.levels, options, run.progress())) {
         if (output.write.half) roundAndRestate(*level);
         run.say("level    " + level->getName() + ": " +
@@ -109,6 +114,13 @@ void writeSolid(ConvertJob& job, std::optional<AtomicFile>& file, const SolidOut
     openvdb::GridCPtrVec written{made};
     if (output.levels > 0) addLevels(job.run(), output, density, grid, written);
     if (colors) written.push_back(colors);
+    if (colors && output.levels > 0) {
+        for (const auto& level :
+             makeDetailLevels(openvdb::Vec3SGrid::ConstPtr(colors), output.levels,
+                              levelOptions(density), job.run().progress())) {
+            written.push_back(level);
+        }
+    }
     job.writeVolume(*file, written, output.write);
 }
 

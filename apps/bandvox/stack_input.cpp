@@ -34,7 +34,7 @@ std::vector<OptionEntry> stackEntries() {
          "Of an array or a stack of images, world units from voxel to voxel along x, y and z.",
          volumes},
         {"origin", 0, "X,Y,Z", "as the file says, else 0",
-         "The same for the place of its first voxel's centre.", volumes},
+         "The same for the place of its first voxel's centre, in the file's own space.", volumes},
         {"space", 0, "LPS|RAS", "as the file says",
          "Of scans and their grids, where the result's axes point: to left, posterior and superior "
          "as those of DICOM do, or to right, anterior and superior.",
@@ -73,7 +73,8 @@ StackRequest readStackRequest(const CommandLine& line, const std::string& input)
     request.spacing = readSpacing(line);
     request.origin = line.vector("origin", kAnyPlace);
     if (line.has("space")) {
-        request.space = std::array{"LPS", "RAS"}[line.choice("space", {"LPS", "RAS"}, 0)];
+        request.space = std::array{"LPS", "RAS", "LPS",
+                                   "RAS"}[line.choice("space", {"LPS", "RAS", "lps", "ras"}, 0)];
     }
     return request;
 }

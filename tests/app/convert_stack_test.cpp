@@ -299,6 +299,7 @@ TEST_F(ConvertStack, KnowsTheSpacesOfScans) {
     expectFailure({"ras.vdb", "-o", "no.vdb", "--onto", "lps.vdb"}, 3, said);
     expectDone({"ras.vdb", "-o", "onto.vdb", "--onto", "none.vdb"});
     for (const Words& words : {Words{"merge", "ras.vdb", "lps.vdb", "-o", "no.vdb"},
+                               {"merge", "none.vdb", "ras.vdb", "lps.vdb", "-o", "no.vdb"},
                                {"compare", "ras.vdb", "lps.vdb", "--only", "values"}}) {
         const RunResult result = runBandvox(words, {.folder = mFolder.path()});
         EXPECT_EQ(result.status, 3) << result.err;

@@ -173,6 +173,10 @@ TEST_F(ConvertVolume, ColoursHaveLevelsOfDetailToo) {
     for (const auto& grid : read("levels.vdb")) names.push_back(grid->getName());
     EXPECT_EQ(names, (std::vector<std::string>{"density", "density_level_1", "density_level_2",
                                                "Cd", "Cd_level_1", "Cd_level_2"}));
+    // Levels that are there are replaced; those of a mesh's colours are the same.
+    ASSERT_EQ(convert({"levels.vdb", "-o", "again.vdb", "--lod", "1"}).status, 0);
+    EXPECT_EQ(read("again.vdb").size(), 4U);
+    EXPECT_EQ(read("again.vdb")[1]->getName(), "density_level_1");
     const auto coarse = openvdb::gridPtrCast<openvdb::Vec3SGrid>(read("levels.vdb")[5]);
     ASSERT_TRUE(coarse);
     EXPECT_NEAR(coarse->voxelSize()[0], 4 * density("cube.vdb")->voxelSize()[0], 1e-12);

@@ -256,6 +256,8 @@ TEST_F(ArrayFile, TakesTheEndsOfAxes) {
     const auto both = infoOf("axis mins: 10 nan 30\nspacings: 2 4 nan\ncenters: node ??? cell\n");
     EXPECT_EQ(placeOf(both, Vec3d(0.0)), Vec3d(10, 0, 30));
     EXPECT_EQ(placeOf(both, Vec3d(1, 1, 1)), Vec3d(12, 4, 31));
+    const auto far = infoOf("axis maxs: 110 nan nan\nspacings: 2 3 4\n");
+    EXPECT_EQ(placeOf(far, Vec3d(0.0)), Vec3d(101, 0, 0));
     EXPECT_THROW(infoOf("spacings: 2 nan\n"), Error);
     EXPECT_THROW(infoOf("axis mins: 1 2 three\n"), Error);
     EXPECT_THROW(infoOf("axis mins: 1 2 3\naxis maxs: 1 3 4\n"), Error) << "no step along x";
@@ -273,6 +275,7 @@ TEST_F(ArrayFile, ItsSpaceIsThatOfTheWorld) {
     EXPECT_EQ(spaceOf("AnatomicalOrientation = RAI\n"), "left-posterior-superior");
     EXPECT_EQ(spaceOf("AnatomicalOrientation = RAS\n"), "left-posterior-superior");
     EXPECT_EQ(spaceOf("AnatomicalOrientation = ???\n"), "");
+    EXPECT_EQ(spaceOf("AnatomicalOrientation = RRL\n"), "");
     EXPECT_EQ(spaceOf(""), "");
 
     const auto nrrd = openArray(write("ras.nrrd",
@@ -285,6 +288,26 @@ TEST_F(ArrayFile, ItsSpaceIsThatOfTheWorld) {
     EXPECT_EQ(nrrd->info().space, "left-posterior-superior");
     EXPECT_EQ(nrrd->info().toWorld.transform(Vec3d(1, 1, 1)), Vec3d(-11, -22, 33));
     EXPECT_THROW(openArray(mFolder / "o.mha")->turnTo("RAS"), Error) << "it says no space";
+}
+
+// Of several files each has its part of the values, whatever follows them.
+TEST_F(ArrayFile, WhatFollowsInAFileIsNoneOfTheNext) {
+    const std::string raw = valueBytes<std::int16_t>();
+    for (int slice = 0; slice < 4; ++slice) {
+        write("t" + std::to_string(slice) + ".raw", "head" + raw.substr(30 * slice, 30) + "behind");
+    }
+    const std::string head =
+        "NRRD0004\ntype: short\ndimension: 3\nsizes: 5 3 4\nendian: little\nencoding: raw\n";
+    const auto path = write("behind.nhdr", head + "byte skip: 4\ndata file: t%d.raw 0 3 1\n");
+    expectValues(path);
+    EXPECT_TRUE(openArray(path)->info().notes.at(0).starts_with("24 bytes"));
+    for (int slice = 0; slice < 4; ++slice) {
+        write("u" + std::to_string(slice) + ".raw", "head" + raw.substr(30 * slice, 30));
+    }
+    expectValues(write("last.nhdr", head + "byte skip: -1\ndata file: u%d.raw 0 3 1\n"));
+    write("t1.raw", "head" + raw.substr(30, 29));
+    expectRefused(path, "shorter than its part");
+    expectRefused(write("seven.nhdr", head + "data file: t%d.raw 0 6 1\n"), "7 files");
 }
 
 TEST_F(ArrayFile, SaysWhatItDoesNotRead) {

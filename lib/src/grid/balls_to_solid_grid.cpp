@@ -102,7 +102,7 @@ class DrawnBalls {
     mutable std::atomic<std::int64_t> mDrawn{0};
 };
 
-/// Leaves that the balls touch on a lattice, at most.
+/// Leaves that the balls touch on a lattice, about.
 double leavesTouched(const Balls& balls, double voxel) {
     openvdb::MaskTree touched;
     openvdb::tree::ValueAccessor<openvdb::MaskTree> accessor(touched);

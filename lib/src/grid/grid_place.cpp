@@ -3,6 +3,8 @@
 #include <bandvox/grid/grid_place.h>
 #include <bandvox/source/world_space.h>
 
+#include <map>
+
 namespace bandvox {
 
 namespace {
@@ -11,6 +13,20 @@ namespace {
 bool turnsWithWorld(const openvdb::GridBase& grid) {
     const bool isVector = grid.valueType().starts_with("vec3");
     return isVector && grid.getVectorType() != openvdb::VEC_INVARIANT;
+}
+
+// The usual short name of a unit of lengths.
+std::string shortUnit(const std::string& unit) {
+    static const std::map<std::string, std::string> kShort{
+        {"millimeter", "mm"}, {"millimeters", "mm"}, {"millimetre", "mm"}, {"millimetres", "mm"},
+        {"centimeter", "cm"}, {"centimeters", "cm"}, {"centimetre", "cm"}, {"centimetres", "cm"},
+        {"meter", "m"},       {"meters", "m"},       {"metre", "m"},       {"metres", "m"},
+        {"micrometer", "um"}, {"micrometers", "um"}, {"micrometre", "um"}, {"micrometres", "um"},
+        {"micron", "um"},     {"microns", "um"},     {"\u00b5m", "um"},    {"\u03bcm", "um"},
+        {"nanometer", "nm"},  {"nanometers", "nm"},  {"nanometre", "nm"},  {"nanometres", "nm"},
+        {"inch", "in"},       {"inches", "in"}};
+    const auto found = kShort.find(unit);
+    return found == kShort.end() ? unit : found->second;
 }
 
 }  // namespace
@@ -22,7 +38,7 @@ std::string placeDifference(const openvdb::GridBase& first, const openvdb::GridB
     if (!spaces[0].empty() && !spaces[1].empty() && spaces[0] != spaces[1]) {
         text += "the first has axes " + spaces[0] + ", the other " + spaces[1];
     }
-    if (!a.unit.empty() && !b.unit.empty() && a.unit != b.unit) {
+    if (!a.unit.empty() && !b.unit.empty() && shortUnit(a.unit) != shortUnit(b.unit)) {
         if (!text.empty()) text += "; ";
         text += "the first has lengths in " + a.unit + ", the other in " + b.unit;
     }

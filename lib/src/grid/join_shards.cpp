@@ -136,10 +136,7 @@ typename Grid::Ptr joinParts(const std::vector<openvdb::GridBase::Ptr>& parts,
     auto whole = Grid::create(first->background());
     static_cast<openvdb::MetaMap&>(*whole) = static_cast<const openvdb::MetaMap&>(*first);
     for (const char* name : {kShard, kOverlaps, kRefinements}) whole->removeMeta(name);
-    if ((*whole)[kSettings]) {
-        whole->removeMeta(kSettings);
-        whole->insertMeta(kSettings, openvdb::StringMetadata(wholeSettings(*first)));
-    }
+    forgetPart(*whole);
     whole->setTransform(first->transform().copy());
     for (const auto& part : parts) addPart(*whole, *openvdb::gridPtrCast<Grid>(part), shared);
     return whole;
@@ -195,6 +192,13 @@ void requireAll(const std::vector<openvdb::GridBase::Ptr>& parts,
 }
 
 }  // namespace
+
+void forgetPart(openvdb::GridBase& grid) {
+    if (!grid[kSettings]) return;
+    const std::string settings = wholeSettings(grid);
+    grid.removeMeta(kSettings);
+    grid.insertMeta(kSettings, openvdb::StringMetadata(settings));
+}
 
 void setShardMetadata(openvdb::GridBase& grid, const ShardMetadata& metadata) {
     for (const char* name : {kShard, kOverlaps, kRefinements}) grid.removeMeta(name);

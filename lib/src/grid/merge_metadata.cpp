@@ -129,7 +129,14 @@ bool haveOneFilter(const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
 void describeMerged(const std::vector<openvdb::FloatGrid::ConstPtr>& grids,
                     const MergeOptions& options, const MergeRule& rule, MergeResult& result) {
     const std::string source = mergedSource(grids, options.operation);
-    setPlaceMetadata(*result.grid, placeMetadata(*grids.front()));
+    // What one of them says holds for all.
+    PlaceMetadata place;
+    for (const auto& grid : grids) {
+        const PlaceMetadata own = placeMetadata(*grid);
+        if (place.unit.empty()) place.unit = own.unit;
+        if (place.space.empty()) place.space = own.space;
+    }
+    setPlaceMetadata(*result.grid, place);
     std::vector<DensityMetadata> inputs;
     if (!haveOneFilter(grids, inputs, result.warnings)) {
         setSourceMetadata(*result.grid, source);

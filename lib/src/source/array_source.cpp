@@ -37,6 +37,14 @@ std::string lowerExtension(const fs::path& path) {
     return extension;
 }
 
+// Of the bytes of an array's values, those in each of its files.
+std::int64_t bytesInFile(const ArrayHeader& header) {
+    const openvdb::Coord& size = header.info.size;
+    return std::int64_t(size[0]) * size[1] * size[2] /
+           static_cast<std::int64_t>(header.files.size()) *
+           static_cast<std::int64_t>(bytesOf(header.type));
+}
+
 // The bytes of a header's files, one after another, without what is to be skipped; unpacked.
 class ValueBytes {
   public:
@@ -54,10 +62,13 @@ class ValueBytes {
         std::size_t done = 0;
         while (done < count) {
             if (!mIsOpen && !openNext()) break;
-            const std::size_t some = mHeader.encoding == ArrayHeader::Encoding::Zlib
-                                         ? unpack(to + done, count - done)
-                                         : readPlain(to + done, count - done);
+            const std::size_t wanted = std::min(count - done, mLeft);
+            const std::size_t some = wanted == 0 ? 0
+                                     : mHeader.encoding == ArrayHeader::Encoding::Zlib
+                                         ? unpack(to + done, wanted)
+                                         : readPlain(to + done, wanted);
             done += some;
+            if (mHeader.encoding != ArrayHeader::Encoding::Text) mLeft -= some;
             if (some == 0) close();
         }
         return done;
@@ -81,6 +92,11 @@ class ValueBytes {
         if (!mStream) failArray(path, "it ends before its values");
         if (mHeader.encoding == ArrayHeader::Encoding::Zlib) beginUnpacking();
         mIsOpen = true;
+        // Of several files each has its part, and what follows is none of the next one's. How
+        // long a text is, nobody knows.
+        const bool isCounted = mHeader.encoding != ArrayHeader::Encoding::Text;
+        mLeft = isCounted ? static_cast<std::size_t>(bytesInFile(mHeader))
+                          : std::numeric_limits<std::size_t>::max();
         return true;
     }
 
@@ -90,9 +106,7 @@ class ValueBytes {
             return;
         }
         // All but the values.
-        const openvdb::Coord& size = mHeader.info.size;
-        const std::int64_t bytes = std::int64_t(size[0]) * size[1] * size[2] *
-                                   static_cast<std::int64_t>(bytesOf(mHeader.type));
+        const std::int64_t bytes = bytesInFile(mHeader);
         std::error_code error;
         const auto length = static_cast<std::int64_t>(fs::file_size(path, error));
         if (error || length < bytes) failArray(path, "it is shorter than its values are");
@@ -145,6 +159,11 @@ class ValueBytes {
     }
 
     void close() {
+        // The next file's values would be taken for those that are missing in this one.
+        if (mLeft > 0 && mFile < mHeader.files.size() &&
+            mHeader.encoding != ArrayHeader::Encoding::Text) {
+            failArray(file(), "it is shorter than its part of the values is");
+        }
         mStream.close();
         mIsOpen = false;
         mZlib.avail_in = 0;
@@ -153,6 +172,7 @@ class ValueBytes {
     const ArrayHeader& mHeader;
     std::size_t mFile = 0;  // the next one
     bool mIsOpen = false;
+    std::size_t mLeft = 0;  // bytes of values in the open file
     std::ifstream mStream;
     std::array<char, 1 << 16> mPacked{};
     z_stream mZlib;
@@ -241,16 +261,15 @@ void checkSides(const fs::path& path, const openvdb::Mat4d& toWorld) {
 void noteBytesBehind(ArrayHeader& header) {
     if (header.encoding != ArrayHeader::Encoding::Raw || header.skipLines > 0) return;
     if (header.skipBytes < 0) return;
-    const openvdb::Coord& size = header.info.size;
-    std::int64_t left = -std::int64_t(size[0]) * size[1] * size[2] *
-                        static_cast<std::int64_t>(bytesOf(header.type));
+    std::int64_t left = 0;
     for (const fs::path& file : header.files) {
         std::error_code error;
         const std::uintmax_t bytes = fs::file_size(file, error);
         if (error) return;
-        left += static_cast<std::int64_t>(bytes) - header.skipBytes;
+        left += std::max<std::int64_t>(
+            0, static_cast<std::int64_t>(bytes) - header.skipBytes - bytesInFile(header));
     }
-    if (left <= 0) return;
+    if (left == 0) return;
     header.info.notes.push_back(std::to_string(left) +
                                 " bytes follow the values that its header tells of, and are not "
                                 "read");
@@ -319,6 +338,18 @@ std::unique_ptr<ArraySource> openArray(const fs::path& path, const ArrayReadOpti
     header.info.name = path.string();
     header.info.valueType = nameOf(header.type);
     checkSides(path, header.info.toWorld);
+    const openvdb::Coord& size = header.info.size;
+    if (std::int64_t(size[0]) * size[1] * size[2] %
+            static_cast<std::int64_t>(header.files.size()) !=
+        0) {
+        failArray(path, "its values are in " + std::to_string(header.files.size()) +
+                            " files, which cannot hold as many each");
+    }
+    if (header.type == ArrayType::Int32 || header.type == ArrayType::UInt32 ||
+        header.type == ArrayType::Int64 || header.type == ArrayType::UInt64) {
+        header.info.notes.push_back(
+            "values are kept as floats: whole numbers beyond 16777216 are rounded");
+    }
     noteBytesBehind(header);
     return std::make_unique<FileArray>(std::move(header));
 }

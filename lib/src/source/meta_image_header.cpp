@@ -63,8 +63,13 @@ std::string metaField(const MetaFields& fields, const std::vector<std::string>& 
     return "";
 }
 
+// A letter of each pair of directions.
 bool isOrientationCode(const std::string& text) {
-    return text.size() == 3 && text.find_first_not_of("RLAPSI") == std::string::npos;
+    const auto count = [&](const char* pair) {
+        return std::count_if(text.begin(), text.end(),
+                             [pair](char c) { return c == pair[0] || c == pair[1]; });
+    };
+    return text.size() == 3 && count("RL") == 1 && count("AP") == 1 && count("SI") == 1;
 }
 
 bool isTrue(const std::string& text) {

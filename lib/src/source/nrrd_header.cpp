@@ -193,6 +193,10 @@ openvdb::Mat4d transformOfAxes(const std::filesystem::path& path, const Fields& 
         if (!std::isnan(mins[axis])) {
             matrix(3, axis) = mins[axis] + (isOfNodes || !hasStep ? 0 : step / 2);
         }
+        const bool hasOtherEnd = std::isnan(mins[axis]) && hasStep && !std::isnan(maxs[axis]);
+        if (hasOtherEnd) {
+            matrix(3, axis) = maxs[axis] - steps * step + (isOfNodes ? 0 : step / 2);
+        }
         hasTransform = hasTransform || hasStep || !std::isnan(mins[axis]);
     }
     return matrix;
@@ -248,6 +252,12 @@ ArrayHeader readNrrdHeader(const std::filesystem::path& path, std::istream& stre
     if (dimension != "3") {
         failArray(path, "it has " + (dimension.empty() ? "no" : dimension.substr(0, 10)) +
                             " dimensions; expected 3, and a number for each voxel");
+    }
+    const std::string kinds = lower(fieldOf(fields, "kinds"));
+    for (const char* kind : {"color", "vector", "complex", "matrix", "normal", "list"}) {
+        if (kinds.find(kind) == std::string::npos) continue;
+        failArray(path, "its axes are '" + kinds.substr(0, 60) +
+                            "'; expected three of space, and a number for each voxel");
     }
     ArrayHeader header;
     const std::string typeName = lower(fieldOf(fields, "type"));

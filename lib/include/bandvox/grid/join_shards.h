@@ -23,6 +23,10 @@ void setShardMetadata(openvdb::GridBase& grid, const ShardMetadata& metadata);
 /// What `grid` says of itself, or nothing if it is a whole.
 std::optional<ShardMetadata> shardMetadata(const openvdb::GridBase& grid);
 
+/// Removes the part from the settings that a grid stores, bandvox_settings: of a grid that one
+/// machine has made whole beside its part of another.
+void forgetPart(openvdb::GridBase& grid);
+
 /// A grid joined of its parts.
 struct JoinedGrid {
     openvdb::GridBase::Ptr grid;
