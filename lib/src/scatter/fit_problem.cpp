@@ -1,13 +1,11 @@
 #include "scatter/fit_problem.h"
 
+#include "scatter/column_scale.h"
 #include "scatter/surface_energy.h"
-
-#include <bandvox/core/error.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <string>
 
 namespace bandvox {
 namespace {
@@ -42,28 +40,13 @@ UnitPoints makeUnitPoints(const MergedPoints& merged, const Rectangle& rectangle
     }
     unit.points = sortPoints(u, v, merged.weight);
     for (int column = 0; column < points.columns; ++column) {
-        double low = points.value(0, column);
-        double high = low;
-        double sum = 0;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            const double value = points.value(i, column);
-            low = std::min(low, value);
-            high = std::max(high, value);
-            sum += value / static_cast<double>(points.size());
-        }
-        const double range = high > low ? high - low : 1;
-        if (!std::isfinite(range) || !std::isfinite(sum)) {
-            throw Error(ErrorKind::Input,
-                        "the values of column " + std::to_string(column + 1) +
-                            " are so far apart that their range is no number; expected less than "
-                            "1.8e308");
-        }
+        const ColumnScale scale = scaleOfColumn(points, column);
         auto& values = unit.values.emplace_back(points.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
-            values[i] = (points.value(unit.points.origin[i], column) - sum) / range;
+            values[i] = (points.value(unit.points.origin[i], column) - scale.mean) / scale.range;
         }
-        unit.mean.push_back(sum);
-        unit.range.push_back(range);
+        unit.mean.push_back(scale.mean);
+        unit.range.push_back(scale.range);
     }
     return unit;
 }

@@ -47,7 +47,7 @@ void checkInside(const ScatteredPoints& points, const Rectangle& r) {
         const double y = points.y[i];
         if (x >= r.x0 && x <= r.x1 && y >= r.y0 && y <= r.y1) continue;
         std::string message = "the place (" + std::to_string(x) + ", ";
-        message += std::to_string(y) + ") is outside the rectangle from (";
+        message += std::to_string(y) + ")" + lineOfPoint(points, i) + " is outside the rectangle from (";
         message += std::to_string(r.x0) + ", " + std::to_string(r.y0) + ") to (";
         message += std::to_string(r.x1) + ", " + std::to_string(r.y1) + "); expected all inside";
         throw Error(ErrorKind::Input, message);
@@ -383,6 +383,9 @@ BsplineSurface SurfaceFit::sum(std::size_t first, std::size_t last) const {
 SurfaceFit fitSurface(const ScatteredPoints& points, const FitSurfaceOptions& options,
                       Progress& progress) {
     checkFitOptions(options);
+    if (points.isInSpace()) {
+        throw Error(ErrorKind::Usage, "the points have a z; expected places in a plane");
+    }
     const MergedPoints merged = mergeDuplicates(points, options.noise > 0 ? -1 : options.tolerance);
     const Rectangle rectangle =
         options.rectangle ? *options.rectangle : boundingRectangle(merged.points);
