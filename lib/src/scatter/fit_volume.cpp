@@ -19,6 +19,9 @@ constexpr double kSpaceStiffness = 1e-2;
 /// Below this, in parts of the range, the shape of what is added does not matter any more.
 constexpr double kSmallInSpace = 1e-7;
 
+/// Of conjugate gradients, for a level or a round of it. More make the field hardly nearer.
+constexpr int kStepsOfLevel = 60;
+
 /// How far around points that lack something a finer net goes, in its cells.
 constexpr double kReachOfRest = 1.5;
 
@@ -47,13 +50,13 @@ class VolumeFitting {
     void takeRest(int level);
     void takeBumps();
     void solveColumns(const SpaceSolver& solver, const SpaceColumns& targets, double reduction,
-                      SpaceColumns& control);
+                      int steps, SpaceColumns& control);
     void measure(const SpacePoints& points, const SpaceColumns& control,
                  const SpaceColumns& wanted);
     void report(int level, std::size_t controlPoints);
     double noiseLeft() const;
     void keep(int level, SpaceNet net);
-    double smallEnough() const { return std::max(kSmallInSpace, mOptions.tolerance); }
+    double smallEnough() const { return std::max(mSmall, mOptions.tolerance); }
 
     SplineVolumeParts mParts;
     SpaceColumns mValues;
@@ -63,6 +66,7 @@ class VolumeFitting {
     SpaceNets mNets;
     SpaceColumns mControl;  // of the present level
     double mLargest = 1, mRms = 1;
+    double mSmall = kSmallInSpace;  // what nets may leave to bumps
     VolumeFit mFit;
 };
 
@@ -130,7 +134,7 @@ void VolumeFitting::report(int level, std::size_t controlPoints) {
 }
 
 void VolumeFitting::solveColumns(const SpaceSolver& solver, const SpaceColumns& targets,
-                                 double reduction, SpaceColumns& control) {
+                                 double reduction, int steps, SpaceColumns& control) {
     std::vector<double> weighted(mParts.points().size());
     for (std::size_t c = 0; c < control.size(); ++c) {
         for (std::size_t i = 0; i < weighted.size(); ++i) {
@@ -138,7 +142,7 @@ void VolumeFitting::solveColumns(const SpaceSolver& solver, const SpaceColumns& 
         }
         std::vector<double> right(control[c].size());
         solver.points().spread(weighted, right);
-        solver.solve(right, control[c], {.reduction = reduction}, mProgress);
+        solver.solve(right, control[c], {.reduction = reduction, .steps = steps}, mProgress);
     }
 }
 
@@ -155,7 +159,7 @@ void VolumeFitting::approximate(int level) {
         }
     }
     const SpaceSolver solver(mNets, level, mParts.points(), mOptions.tension, kSpaceStiffness);
-    solveColumns(solver, mValues, 1e-2, mControl);
+    solveColumns(solver, mValues, 1e-2, kStepsOfLevel, mControl);
     measure(solver.points(), mControl, mValues);
     report(level, net.count());
 }
@@ -169,7 +173,7 @@ void VolumeFitting::interpolate(const SpaceNets& nets, int level, const SpaceCol
     SpaceColumns targets = wanted;
     double before = 1;
     for (int round = 0; round < kRounds; ++round) {
-        solveColumns(solver, targets, 1e-2, control);
+        solveColumns(solver, targets, 1e-2, kStepsOfLevel, control);
         measure(solver.points(), control, wanted);
         constexpr double kSlow = 0.8;
         if (mLargest <= smallEnough() || (round > 1 && mRms > kSlow * before)) break;
@@ -200,7 +204,7 @@ bool VolumeFitting::smooth(int level) {
     const auto tryStiffness = [&](double logarithm) {
         const SpaceSolver solver(mNets, level, mParts.points(), mOptions.tension,
                                  std::pow(10, logarithm));
-        solveColumns(solver, mValues, 1e-3, mControl);
+        solveColumns(solver, mValues, 1e-3, 4 * kStepsOfLevel, mControl);
         measure(solver.points(), mControl, mValues);
         return noiseLeft() < 1;
     };
@@ -305,6 +309,14 @@ VolumeFit VolumeFitting::run() {
             }
         }
         break;
+    }
+    // What a net half as fine lacks tells how much of the field is still unknown: bumps of a part of
+    // that change nothing.
+    if (mFit.report.size() > 1) {
+        constexpr double kPart = 0.01;
+        constexpr double kMostForBumps = 1e-5;
+        const double coarser = mFit.report[mFit.report.size() - 2].largest;
+        mSmall = std::clamp(kPart * coarser, kSmallInSpace, kMostForBumps);
     }
     mFit.report.pop_back();
     if (isSmooth) {

@@ -90,25 +90,21 @@ double OccupiedCells::nearest(std::size_t i) const {
     return std::sqrt(least);
 }
 
-bool OccupiedCells::isNear(const std::array<double, 3>& at, double reach) const {
-    const double cells = std::ldexp(1.0, mLevel);
-    SpaceNet::Place own{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        own[axis] = static_cast<int>(std::floor(at[axis] * cells));
-    }
-    // A point on the box's upper faces is in the last cell, not in the next one.
-    const int rings = static_cast<int>(std::ceil(reach * cells)) + 1;
-    bool isFound = false;
-    for (int ring = 0; ring <= rings && !isFound; ++ring) {
-        forRing(own, ring, [&](const SpaceNet::Place& cell) {
-            if (isFound) return;
-            const auto [begin, end] = pointsOf(cell);
-            for (std::size_t i = begin; i < end && !isFound; ++i) {
-                isFound = squareOfDistance(at, mPoints.at[i]) <= reach * reach;
-            }
+std::vector<std::uint32_t> OccupiedCells::pointsNear(const SpaceNet::Place& cell,
+                                                     double reach) const {
+    std::vector<std::uint32_t> found;
+    const int rings = static_cast<int>(std::floor(reach)) + 1;
+    const auto gap = [](int a, int b) { return std::max(std::abs(a - b) - 1, 0); };
+    for (int ring = 0; ring <= rings; ++ring) {
+        forRing(cell, ring, [&](const SpaceNet::Place& other) {
+            const double distance = std::hypot(gap(cell[0], other[0]), gap(cell[1], other[1]),
+                                               gap(cell[2], other[2]));
+            if (distance > reach) return;
+            const auto [begin, end] = pointsOf(other);
+            for (std::uint32_t i = begin; i < end; ++i) found.push_back(i);
         });
     }
-    return isFound;
+    return found;
 }
 
 }  // namespace bandvox

@@ -156,28 +156,24 @@ void SpaceEnergy::addBorderBlock(std::size_t block, const double* cube, double* 
     for (const DifferenceKind& kind : kKinds) {
         const double weight = weightOf(kind, mWeights);
         const DifferenceTerms all(kind);
-        const int beginX = kAround - kind.order[0];
-        const int beginY = kAround - kind.order[1];
-        const int beginZ = kAround - kind.order[2];
         constexpr int kEnd = kAround + SpaceNet::kSide;
         // Take the differences.
-        for (int x = beginX; x < kEnd; ++x) {
-            for (int y = beginY; y < kEnd; ++y) {
+        for (int x = kAround - kind.order[0]; x < kEnd; ++x) {
+            for (int y = kAround - kind.order[1]; y < kEnd; ++y) {
                 unsigned there = ~0U;
+                std::array<double, kEnd> row{};
+                const double* const from = cube + (x * kCubeSide + y) * kCubeRow;
                 for (std::size_t t = 0; t < all.count; ++t) {
                     const DifferenceTerm& term = all.terms[t];
                     there &= rows[static_cast<std::size_t>((x + term.x) * kCubeSide + y + term.y)] >>
                              term.z;
+                    if (diagonal) continue;
+                    const double* const at = from + term.offset;
+                    for (std::size_t z = 0; z < kEnd; ++z) row[z] += term.factor * at[z];
                 }
-                const std::ptrdiff_t row = (x * kCubeSide + y) * kCubeRow;
-                for (int z = beginZ; z < kEnd; ++z) {
-                    double sum = diagonal ? 1 : 0;
-                    for (std::size_t t = 0; !diagonal && t < all.count; ++t) {
-                        sum += all.terms[t].factor * cube[row + z + all.terms[t].offset];
-                    }
-                    const bool counts = (there >> static_cast<unsigned>(z) & 1U) != 0;
-                    found[static_cast<std::size_t>(row + z)] = counts ? sum : 0;
-                }
+                double* const to = found.data() + (x * kCubeSide + y) * kCubeRow;
+                if (diagonal) row.fill(1);
+                for (unsigned z = 0; z < kEnd; ++z) to[z] = (there >> z & 1U) != 0 ? row[z] : 0;
             }
         }
         // Give each control point its share of them.

@@ -46,8 +46,9 @@ class OccupiedCells {
     /// farther than 8 cells.
     double nearest(std::size_t i) const;
 
-    /// True if there is a point no farther than `reach`.
-    bool isNear(const std::array<double, 3>& at, double reach) const;
+    /// The points in cells that are, at their nearest, no farther than `reach` from a cell, in
+    /// units of cells.
+    std::vector<std::uint32_t> pointsNear(const SpaceNet::Place& cell, double reach) const;
 
   private:
     const SortedSpacePoints& mPoints;

@@ -3,6 +3,7 @@
 #include "scatter/spline_volume_parts.h"
 
 #include <cmath>
+#include <utility>
 
 namespace bandvox {
 namespace {
@@ -52,13 +53,40 @@ void LayerReader::addTo(const std::array<double, 3>& at, double* values) {
     }
 }
 
-bool SplineVolumeParts::covers(const std::array<double, 3>& at) const {
-    const double cells = std::ldexp(1.0, occupied->level());
-    SpaceNet::Place cell{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        cell[axis] = static_cast<int>(std::floor(at[axis] * cells));
+ReachReader::ReachReader(const SplineVolumeParts& parts)
+    : mParts(parts), mCells(std::ldexp(1.0, parts.occupied->level())) {}
+
+const ReachReader::Cell& ReachReader::cellOf(const SpaceNet::Place& place) {
+    for (const Cell& cell : mKnown) {
+        if (cell.place == place) return cell;
     }
-    return near.contains(cell) && (sure.contains(cell) || occupied->isNear(at, reach));
+    Cell found{place, mParts.near.contains(place), false, {}};
+    found.isSure = found.isNear && mParts.sure.contains(place);
+    if (found.isNear && !found.isSure) {
+        found.points = mParts.occupied->pointsNear(place, mParts.reach * mCells);
+    }
+    // As many as a block of voxels meets if these are smaller than cells.
+    constexpr std::size_t kMostKnown = 8;
+    if (mKnown.size() < kMostKnown) return mKnown.emplace_back(std::move(found));
+    Cell& replaced = mKnown[mNext++ % kMostKnown];
+    replaced = std::move(found);
+    return replaced;
+}
+
+bool ReachReader::covers(const std::array<double, 3>& at) {
+    SpaceNet::Place place{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        place[axis] = static_cast<int>(std::floor(at[axis] * mCells));
+    }
+    const Cell& cell = cellOf(place);
+    if (!cell.isNear || cell.isSure) return cell.isNear;
+    return std::any_of(cell.points.begin(), cell.points.end(), [&](std::uint32_t i) {
+        const auto& point = mParts.points().at[i];
+        const double x = at[0] - point[0];
+        const double y = at[1] - point[1];
+        const double z = at[2] - point[2];
+        return x * x + y * y + z * z <= mParts.reach * mParts.reach;
+    });
 }
 
 int SplineVolume::columns() const {
@@ -82,7 +110,7 @@ std::size_t SplineVolume::controlPoints() const {
 }
 
 bool SplineVolume::covers(const openvdb::Vec3d& place) const {
-    return mParts->covers(mParts->unitPlace(place));
+    return ReachReader(*mParts).covers(mParts->unitPlace(place));
 }
 
 double SplineVolume::value(const openvdb::Vec3d& place, int column) const {

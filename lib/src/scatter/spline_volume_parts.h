@@ -45,7 +45,27 @@ struct SplineVolumeParts {
         return {(place[0] - origin[0]) / longest, (place[1] - origin[1]) / longest,
                 (place[2] - origin[2]) / longest};
     }
-    bool covers(const std::array<double, 3>& at) const;
+};
+
+/// Tells whether there is a point within reach of a place. What is known of some cells is kept. For
+/// one thread.
+class ReachReader {
+  public:
+    explicit ReachReader(const SplineVolumeParts& parts);
+    bool covers(const std::array<double, 3>& at);
+
+  private:
+    struct Cell {
+        SpaceNet::Place place;
+        bool isNear, isSure;
+        std::vector<std::uint32_t> points;  ///< that may be near, if it is not sure
+    };
+    const Cell& cellOf(const SpaceNet::Place& place);
+
+    const SplineVolumeParts& mParts;
+    double mCells;
+    std::vector<Cell> mKnown;
+    std::size_t mNext = 0;  // to be replaced
 };
 
 /// Reads a layer's values. What is around the last place is kept, so that places near each other

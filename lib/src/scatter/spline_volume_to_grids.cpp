@@ -58,7 +58,7 @@ std::vector<openvdb::Coord> leavesNear(const SplineVolumeParts& parts, double vo
 class LeafSampler {
   public:
     LeafSampler(const SplineVolumeParts& parts, double voxelSize)
-        : mParts(parts), mVoxelSize(voxelSize) {
+        : mParts(parts), mVoxelSize(voxelSize), mReach(parts) {
         for (const SpaceLayer& layer : parts.layers) mReaders.emplace_back(layer);
     }
 
@@ -69,7 +69,7 @@ class LeafSampler {
         std::vector<double> one(columns);
         for (openvdb::Index i = 0; i < FloatLeaf::SIZE; ++i) {
             const std::array<double, 3> at = placeOf(origin + FloatLeaf::offsetToLocalCoord(i));
-            if (!mParts.covers(at)) continue;
+            if (!mReach.covers(at)) continue;
             leaf.active.setOn(i);
             std::fill(one.begin(), one.end(), 0.0);
             for (LayerReader& reader : mReaders) reader.addTo(at, one.data());
@@ -146,6 +146,7 @@ class LeafSampler {
 
     const SplineVolumeParts& mParts;
     double mVoxelSize;
+    ReachReader mReach;
     std::vector<LayerReader> mReaders;
 };
 
