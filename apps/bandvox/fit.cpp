@@ -4,6 +4,7 @@
 #include "commands.h"
 #include "density_report.h"
 #include "fit_output.h"
+#include "fit_volume.h"
 #include "mesh_output.h"
 #include "standard_streams.h"
 #include "volume_options.h"
@@ -34,11 +35,13 @@ const CommandTable& fitTable() {
             "makes of them the smoothest sum of B-spline surfaces that has these values. It is "
             "twice "
             "continuously differentiable, and written as Bézier patches, samples, a mesh, a "
-            "picture, or the solid under it.",
+            "picture, or the solid under it. With --volume the places are in space, and the "
+            "values become grids.",
             {{"POINTS", "A table: .csv .xyz .txt, or .npy with a row for each point."}},
             {
                 {"columns", 0, "X,Y,VALUE,...", "x, y and all others",
-                 "The columns to take, by name or number from 1.", "Points"},
+                 "The columns to take, by name or number from 1; with --volume z comes after y.",
+                 "Points"},
                 {"rectangle", 0, "X0,Y0,X1,Y1", "of the points",
                  "What the surface covers; all points have to be in it.", "Points"},
                 {"tolerance", 0, "T", "1e-12",
@@ -51,13 +54,16 @@ const CommandTable& fitTable() {
                  "differs from them by so much.",
                  "Surface"},
                 {"max-level", 0, "K", "from the data",
-                 "At most 2^K cells along the longer side, 1 to 13.", "Surface"},
+                 "At most 2^K cells along the longer side, 1 to 13; 1 to 16 with --volume.",
+                 "Surface"},
                 {"levels", 0, "A..B", "all",
                  "Sum up levels A to B only, as counted from 1: 1..3 leaves detail away.",
                  "Surface"},
-                {"tension", 0, "T", "the most likely",
+                {"tension", 0, "T", "the most likely, or 2",
                  "The surface is stiff within 1/T, and like a membrane farther off, in units of "
-                 "the root of the rectangle's area; 0.01 to 10000.",
+                 "the root of the rectangle's area, or of the longest side of a volume's box; 0.01 "
+                 "to "
+                 "10000.",
                  "Surface"},
             },
             {
@@ -65,7 +71,10 @@ const CommandTable& fitTable() {
                 {"bandvox fit points.csv -o surface.npy --samples 1001", "An array of samples."},
                 {"bandvox fit terrain.csv -o terrain.vdb -r 500 --smooth 0.2",
                  "The solid under a terrain, whose heights were measured to 0.2."},
+                {"bandvox fit cloud.csv --volume -o field.vdb -r 200",
+                 "Values at places in space."},
             }};
+        for (const OptionEntry& entry : fitVolumeEntries()) made.options.push_back(entry);
         for (const OptionEntry& entry : fitOutputEntries()) made.options.push_back(entry);
         return made;
     }();
@@ -195,6 +204,8 @@ BsplineSurface chosenSum(const FitRequest& request, SurfaceFit& fit) {
 }  // namespace
 
 void runFit(const CommandLine& line) {
+    if (line.has("volume")) return runFitVolume(line);
+    refuseOptions(line, {"reach"}, "without --volume");
     const FitRequest request = parseFit(line);
     CommandRun run(line);
     AtomicFile output(request.output.path);

@@ -47,7 +47,8 @@ void checkInside(const ScatteredPoints& points, const Rectangle& r) {
         const double y = points.y[i];
         if (x >= r.x0 && x <= r.x1 && y >= r.y0 && y <= r.y1) continue;
         std::string message = "the place (" + std::to_string(x) + ", ";
-        message += std::to_string(y) + ")" + lineOfPoint(points, i) + " is outside the rectangle from (";
+        message +=
+            std::to_string(y) + ")" + lineOfPoint(points, i) + " is outside the rectangle from (";
         message += std::to_string(r.x0) + ", " + std::to_string(r.y0) + ") to (";
         message += std::to_string(r.x1) + ", " + std::to_string(r.y1) + "); expected all inside";
         throw Error(ErrorKind::Input, message);

@@ -204,18 +204,21 @@ bool VolumeFitting::smooth(int level) {
     const auto tryStiffness = [&](double logarithm) {
         const SpaceSolver solver(mNets, level, mParts.points(), mOptions.tension,
                                  std::pow(10, logarithm));
-        solveColumns(solver, mValues, 1e-3, 4 * kStepsOfLevel, mControl);
+        solveColumns(solver, mValues, 1e-2, 2 * kStepsOfLevel, mControl);
         measure(solver.points(), mControl, mValues);
         return noiseLeft() < 1;
     };
     constexpr double kSoftest = -3;
-    constexpr double kStiffest = 7;
+    constexpr double kStiffest = 6;
     double low = kSoftest;
     double high = kStiffest;
-    constexpr double kFineEnough = 0.05;
+    constexpr double kFineEnough = 0.1;
     while (high - low > kFineEnough) {
         const double middle = (low + high) / 2;
         (tryStiffness(middle) ? low : high) = middle;
+        // What does not differ by as much where it is stiff does so nowhere.
+        const bool isHopeless = low > kStiffest - 3 && std::sqrt(noiseLeft()) < 0.5;
+        if (isHopeless) return false;
     }
     tryStiffness(low);
     constexpr double kNearly = 0.1;
@@ -230,8 +233,7 @@ void VolumeFitting::keep(int level, SpaceNet net) {
 /// Finer nets around the points that lack something still.
 void VolumeFitting::takeRest(int level) {
     constexpr int kLevelsMore = 6;
-    const int last =
-        std::min(mOptions.maxLevel.value_or(kFinestSpaceLevel), level + kLevelsMore);
+    const int last = std::min(mOptions.maxLevel.value_or(kFinestSpaceLevel), level + kLevelsMore);
     while (mLargest > smallEnough() && ++level <= last) {
         SpaceNet places;
         for (std::size_t i = 0; i < mParts.points().size(); ++i) {
@@ -242,9 +244,8 @@ void VolumeFitting::takeRest(int level) {
         }
         places.sort();
         constexpr int kLevelsBelow = 3;
-        const SpaceNets nets =
-            makeSpaceNets(places.dilated(kReachOfRest, false).controlsOfCells(), level,
-                          std::max(1, level - kLevelsBelow));
+        const SpaceNets nets = makeSpaceNets(places.dilated(kReachOfRest, false).controlsOfCells(),
+                                             level, std::max(1, level - kLevelsBelow));
         const SpaceColumns wanted = mLacking;
         const double largest = mLargest, rms = mRms;
         mControl.assign(mValues.size(), std::vector<double>(nets.nets.back().numbers()));
@@ -310,11 +311,11 @@ VolumeFit VolumeFitting::run() {
         }
         break;
     }
-    // What a net half as fine lacks tells how much of the field is still unknown: bumps of a part of
-    // that change nothing.
+    // What a net half as fine lacks tells how much of the field is still unknown: bumps of a part
+    // of that change nothing.
     if (mFit.report.size() > 1) {
-        constexpr double kPart = 0.01;
-        constexpr double kMostForBumps = 1e-5;
+        constexpr double kPart = 0.1;
+        constexpr double kMostForBumps = 1e-4;
         const double coarser = mFit.report[mFit.report.size() - 2].largest;
         mSmall = std::clamp(kPart * coarser, kSmallInSpace, kMostForBumps);
     }

@@ -97,8 +97,8 @@ std::vector<std::uint32_t> OccupiedCells::pointsNear(const SpaceNet::Place& cell
     const auto gap = [](int a, int b) { return std::max(std::abs(a - b) - 1, 0); };
     for (int ring = 0; ring <= rings; ++ring) {
         forRing(cell, ring, [&](const SpaceNet::Place& other) {
-            const double distance = std::hypot(gap(cell[0], other[0]), gap(cell[1], other[1]),
-                                               gap(cell[2], other[2]));
+            const double distance =
+                std::hypot(gap(cell[0], other[0]), gap(cell[1], other[1]), gap(cell[2], other[2]));
             if (distance > reach) return;
             const auto [begin, end] = pointsOf(other);
             for (std::uint32_t i = begin; i < end; ++i) found.push_back(i);

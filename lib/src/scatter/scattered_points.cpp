@@ -115,7 +115,8 @@ void checkAgreement(const ScatteredPoints& points, const std::vector<std::size_t
         text.precision(10);
         text << "the place " << shownPlace(points, order[begin]) << " has values from " << low
              << lineOfPoint(points, least) << " to " << high << lineOfPoint(points, most)
-             << " in column " << column + 1 << "; expected one value, or such as differ by no more than "
+             << " in column " << column + 1
+             << "; expected one value, or such as differ by no more than "
              << allowed[static_cast<std::size_t>(column)];
         throw Error(ErrorKind::Input, text.str());
     }
@@ -178,8 +179,7 @@ Rectangle boundingRectangle(const ScatteredPoints& points) {
     Rectangle rectangle{*x0, *y0, *x1, *y1};
     const double longest = std::max(rectangle.width(), rectangle.height());
     if (!(longest > 0)) {
-        throw Error(ErrorKind::Input, "the points are all at " +
-                                          shownPlace(points, 0) +
+        throw Error(ErrorKind::Input, "the points are all at " + shownPlace(points, 0) +
                                           "; expected two places at least");
     }
     constexpr double kFlattest = 1.0 / 1024;

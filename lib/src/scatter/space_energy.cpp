@@ -9,8 +9,7 @@ namespace {
 constexpr int kAround = 3;
 constexpr int kCubeSide = SpaceNet::kSide + 2 * kAround;
 constexpr int kCubeRow = 16;
-constexpr std::size_t kCubeNumbers =
-    static_cast<std::size_t>(kCubeSide) * kCubeSide * kCubeRow;
+constexpr std::size_t kCubeNumbers = static_cast<std::size_t>(kCubeSide) * kCubeSide * kCubeRow;
 
 constexpr std::array<std::array<double, 4>, 4> kBinomial{
     {{1, 0, 0, 0}, {-1, 1, 0, 0}, {1, -2, 1, 0}, {-1, 3, -3, 1}}};
@@ -59,7 +58,8 @@ struct DifferenceTerms {
 
     explicit DifferenceTerms(const DifferenceKind& kind) {
         const auto factorOf = [&](std::size_t axis, int i) {
-            return kBinomial[static_cast<std::size_t>(kind.order[axis])][static_cast<std::size_t>(i)];
+            return kBinomial[static_cast<std::size_t>(kind.order[axis])]
+                            [static_cast<std::size_t>(i)];
         };
         for (int x = 0; x <= kind.order[0]; ++x) {
             for (int y = 0; y <= kind.order[1]; ++y) {
@@ -95,9 +95,9 @@ std::array<unsigned, kCubeSide * kCubeSide> rowsAround(const SpaceNet& net, std:
     const SpaceNet::Place at = net.placeOf(block);
     for (int k = 0; k < 27; ++k) {
         const std::array<int, 3> step{k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1};
-        const std::int32_t other = net.blockOf({at[0] + step[0] * SpaceNet::kSide,
-                                                at[1] + step[1] * SpaceNet::kSide,
-                                                at[2] + step[2] * SpaceNet::kSide});
+        const std::int32_t other =
+            net.blockOf({at[0] + step[0] * SpaceNet::kSide, at[1] + step[1] * SpaceNet::kSide,
+                         at[2] + step[2] * SpaceNet::kSide});
         if (other < 0) continue;
         const auto& from = net.rowsOf(static_cast<std::size_t>(other));
         for (int x = 0; x < kCubeSide; ++x) {
@@ -165,15 +165,16 @@ void SpaceEnergy::addBorderBlock(std::size_t block, const double* cube, double* 
                 const double* const from = cube + (x * kCubeSide + y) * kCubeRow;
                 for (std::size_t t = 0; t < all.count; ++t) {
                     const DifferenceTerm& term = all.terms[t];
-                    there &= rows[static_cast<std::size_t>((x + term.x) * kCubeSide + y + term.y)] >>
-                             term.z;
+                    there &=
+                        rows[static_cast<std::size_t>((x + term.x) * kCubeSide + y + term.y)] >>
+                        term.z;
                     if (diagonal) continue;
                     const double* const at = from + term.offset;
                     for (std::size_t z = 0; z < kEnd; ++z) row[z] += term.factor * at[z];
                 }
-                double* const to = found.data() + (x * kCubeSide + y) * kCubeRow;
+                double* const into = found.data() + (x * kCubeSide + y) * kCubeRow;
                 if (diagonal) row.fill(1);
-                for (unsigned z = 0; z < kEnd; ++z) to[z] = (there >> z & 1U) != 0 ? row[z] : 0;
+                for (unsigned z = 0; z < kEnd; ++z) into[z] = (there >> z & 1U) != 0 ? row[z] : 0;
             }
         }
         // Give each control point its share of them.

@@ -69,8 +69,9 @@ std::int32_t SpaceNet::blockOf(const Place& place) const {
 bool SpaceNet::contains(const Place& place) const {
     const std::int32_t block = blockOf(place);
     if (block < 0) return false;
-    const unsigned row = mBlocks[static_cast<std::size_t>(block)]
-                             .rows[static_cast<std::size_t>((place[0] & 7) * kSide + (place[1] & 7))];
+    const unsigned row =
+        mBlocks[static_cast<std::size_t>(block)]
+            .rows[static_cast<std::size_t>((place[0] & 7) * kSide + (place[1] & 7))];
     return (row >> static_cast<unsigned>(place[2] & 7) & 1U) != 0;
 }
 
@@ -214,9 +215,9 @@ void SpaceNet::gather(std::span<const double> numbers, const Place& from, int si
                             continue;
                         }
                         const std::size_t at = static_cast<std::size_t>(block) * kBlock;
-                        std::copy_n(numbers.data() + at + ((a - x) * kSide + (b - y)) * kSide +
-                                        (z0 - z),
-                                    z1 - z0, to);
+                        std::copy_n(
+                            numbers.data() + at + ((a - x) * kSide + (b - y)) * kSide + (z0 - z),
+                            z1 - z0, to);
                     }
                 }
             }

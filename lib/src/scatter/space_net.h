@@ -12,8 +12,8 @@
 
 namespace bandvox {
 
-/// Places of a lattice in space, and vectors of numbers that belong to them, in blocks of 8 x 8 x 8:
-/// control points of a sparse net, or cells. Cell i lies between the knots i and i + 1, and the
+/// Places of a lattice in space, and vectors of numbers that belong to them, in blocks of 8 x 8 x
+/// 8: control points of a sparse net, or cells. Cell i lies between the knots i and i + 1, and the
 /// control points i to i + 3 count in it.
 class SpaceNet {
   public:
@@ -24,7 +24,9 @@ class SpaceNet {
 
     /// Adds the places (x, y, z + i) for which bit i of `bits` is set; z is a multiple of 8.
     void addRow(const Place& row, unsigned bits);
-    void add(const Place& place) { addRow({place[0], place[1], place[2] & ~7}, 1U << (place[2] & 7)); }
+    void add(const Place& place) {
+        addRow({place[0], place[1], place[2] & ~7}, 1U << (place[2] & 7));
+    }
 
     bool contains(const Place& place) const;
 
@@ -58,8 +60,8 @@ class SpaceNet {
     SpaceNet dilated(double reach, bool surely) const;
     static constexpr double kMostReach = 22;
 
-    /// Copies a cube of numbers, [x][y][z], from `from` on; `row` numbers lie between its rows along
-    /// z, which are `side` long.
+    /// Copies a cube of numbers, [x][y][z], from `from` on; `row` numbers lie between its rows
+    /// along z, which are `side` long.
     void gather(std::span<const double> numbers, const Place& from, int side, int row,
                 double* cube) const;
 

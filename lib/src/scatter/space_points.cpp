@@ -9,7 +9,8 @@ namespace bandvox {
 namespace {
 
 constexpr int kReachSide = SpaceNet::kSide + 3;
-using ReachCube = std::array<double, static_cast<std::size_t>(kReachSide) * kReachSide * kReachSide>;
+using ReachCube =
+    std::array<double, static_cast<std::size_t>(kReachSide) * kReachSide * kReachSide>;
 
 /// Spreads the bits of a number three apart.
 std::uint64_t spreadByThree(std::uint64_t bits) {
@@ -44,8 +45,7 @@ double reachValue(const ReachPlace& place, const ReachCube& cube) {
     for (int x = 0; x < 4; ++x) {
         double sheet = 0;
         for (int y = 0; y < 4; ++y) {
-            const double* const row =
-                cube.data() + place.first + (x * kReachSide + y) * kReachSide;
+            const double* const row = cube.data() + place.first + (x * kReachSide + y) * kReachSide;
             const auto& z = place.weights[2];
             sheet += place.weights[1][static_cast<std::size_t>(y)] *
                      (row[0] * z[0] + row[1] * z[1] + row[2] * z[2] + row[3] * z[3]);

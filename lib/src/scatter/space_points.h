@@ -92,7 +92,7 @@ class SpacePoints {
 
     const SortedSpacePoints& mPoints;
     const SpaceNet& mNet;
-    double mCells;  // along the box
+    double mCells;                            // along the box
     std::array<std::vector<Part>, 8> mParts;  // no two of one kind share control points
 };
 

@@ -102,7 +102,8 @@ int SpaceSolver::solve(std::span<const double> b, std::span<double> x, const Sto
         const double next = dotProduct(residual, better);
         const double turn = next / measure;
         forPieces(x.size(), kSpacePiece, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) direction[i] = better[i] + turn * direction[i];
+            for (std::size_t i = begin; i < end; ++i)
+                direction[i] = better[i] + turn * direction[i];
         });
         measure = next;
     }

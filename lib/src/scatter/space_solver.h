@@ -23,8 +23,8 @@ struct SpaceNets {
 
 SpaceNets makeSpaceNets(SpaceNet finest, int level, int coarsest);
 
-/// Solves (A^T W A + E) c = b on a sparse net by conjugate gradients. What precedes a step is the sum
-/// over the levels of each diagonal's inverse, which takes about as many steps for every size.
+/// Solves (A^T W A + E) c = b on a sparse net by conjugate gradients. What precedes a step is the
+/// sum over the levels of each diagonal's inverse, which takes about as many steps for every size.
 /// J. H. Bramble, J. E. Pasciak, J. Xu, "Parallel Multilevel Preconditioners", 1990.
 class SpaceSolver {
   public:

@@ -30,8 +30,7 @@ void LayerReader::addTo(const std::array<double, 3>& at, double* values) {
         mBlock = block;
         mCubes.resize(mLayer.control.size(), std::vector<double>(kReaderNumbers));
         for (std::size_t c = 0; c < mCubes.size(); ++c) {
-            mLayer.net.gather(mLayer.control[c], block, kReaderSide, kReaderSide,
-                              mCubes[c].data());
+            mLayer.net.gather(mLayer.control[c], block, kReaderSide, kReaderSide, mCubes[c].data());
         }
     }
     const int first = ((cell[0] - block[0]) * kReaderSide + cell[1] - block[1]) * kReaderSide +

@@ -48,7 +48,8 @@ std::vector<openvdb::Coord> leavesNear(const SplineVolumeParts& parts, double vo
         const SpaceNet::Place at = leaves.placeOf(block);
         for (int i = 0; i < static_cast<int>(SpaceNet::kBlock); ++i) {
             openvdb::Coord leaf(at[0] + i / 64, at[1] + i / 8 % 8, at[2] + i % 8);
-            if (leaves.contains({leaf[0], leaf[1], leaf[2]})) found.push_back(openvdb::Coord(leaf[0] * 8, leaf[1] * 8, leaf[2] * 8));
+            if (leaves.contains({leaf[0], leaf[1], leaf[2]}))
+                found.push_back(openvdb::Coord(leaf[0] * 8, leaf[1] * 8, leaf[2] * 8));
         }
     }
     return found;
@@ -237,10 +238,9 @@ openvdb::GridPtrVec splineVolumeToGrids(const SplineVolume& volume,
     const bool isEmpty = std::all_of(leaves.begin(), leaves.end(),
                                      [](const SampledLeaf& leaf) { return leaf.values.empty(); });
     if (isEmpty) {
-        throw Error(ErrorKind::Result, "no voxel of side " + std::to_string(voxelSize) +
-                                           " has its centre within " +
-                                           std::to_string(volume.reach()) +
-                                           " of a point; expected smaller ones");
+        throw Error(ErrorKind::Result,
+                    "no voxel of side " + std::to_string(voxelSize) + " has its centre within " +
+                        std::to_string(volume.reach()) + " of a point; expected smaller ones");
     }
     openvdb::GridPtrVec result;
     for (const ColumnGrid& wanted : grids) {

@@ -50,8 +50,8 @@ SplineVolumeParts makeUnitVolume(const MergedPoints& merged, SpaceColumns& colum
     for (std::size_t i = 0; i < at.size(); ++i) {
         at[i] = parts.unitPlace({points.x[i], points.y[i], points.z[i]});
     }
-    parts.sorted = std::make_unique<const SortedSpacePoints>(
-        sortSpacePoints(std::move(at), merged.weight));
+    parts.sorted =
+        std::make_unique<const SortedSpacePoints>(sortSpacePoints(std::move(at), merged.weight));
     for (int column = 0; column < points.columns; ++column) {
         const ColumnScale scale = scaleOfColumn(points, column);
         parts.mean.push_back(scale.mean);
@@ -74,8 +74,8 @@ double spacingOf(const SortedSpacePoints& points, int level) {
         const auto i = static_cast<std::size_t>(k);
         nearest[i] = cells.nearest(i * points.size() / count);
     });
-    const auto at = nearest.begin() + static_cast<std::ptrdiff_t>(
-                                          static_cast<double>(count - 1) * kMost);
+    const auto at =
+        nearest.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(count - 1) * kMost);
     std::nth_element(nearest.begin(), at, nearest.end());
     return *at;
 }

@@ -14,7 +14,8 @@ struct SplineVolumeParts;
 class SplineVolume {
   public:
     SplineVolume() = default;
-    explicit SplineVolume(std::shared_ptr<const SplineVolumeParts> parts) : mParts(std::move(parts)) {}
+    explicit SplineVolume(std::shared_ptr<const SplineVolumeParts> parts)
+        : mParts(std::move(parts)) {}
 
     int columns() const;
     /// The box of the points, world units.

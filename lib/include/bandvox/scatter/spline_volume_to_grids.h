@@ -16,9 +16,9 @@ struct ColumnGrid {
     openvdb::VecType type = openvdb::VEC_INVARIANT;  ///< of the vectors
 };
 
-/// Samples a volume on a lattice: the centres of voxels are at whole multiples of `voxelSize`, world
-/// units, above 0. Voxels within reach of a point are active; all others have the background, 0.
-/// The result does not depend on the number of threads.
+/// Samples a volume on a lattice: the centres of voxels are at whole multiples of `voxelSize`,
+/// world units, above 0. Voxels within reach of a point are active; all others have the background,
+/// 0. The result does not depend on the number of threads.
 ///
 /// Throws Error(ErrorKind::Usage) for columns that are not there, Error(ErrorKind::Result) if no
 /// voxel is within reach, Error(ErrorKind::Memory) if there are too many,
