@@ -3,9 +3,12 @@
 #include "scatter/column_scale.h"
 #include "scatter/surface_energy.h"
 
+#include <bandvox/core/error.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 
 namespace bandvox {
 namespace {
@@ -26,6 +29,41 @@ double energyOfControl(const EnergyWeights& weights, std::array<double, 2> cell)
 }
 
 }  // namespace
+
+void checkFitOptions(const FitSurfaceOptions& options) {
+    const auto fail = [](const std::string& name, double found, const std::string& expected) {
+        std::string message = name + " of a fit is ";
+        message += std::to_string(found) + "; expected ";
+        message += expected;
+        throw Error(ErrorKind::Usage, message);
+    };
+    if (!(options.tolerance >= 0 && options.tolerance <= 1)) {
+        fail("the tolerance", options.tolerance, "0 to 1");
+    }
+    if (!(options.noise >= 0 && std::isfinite(options.noise))) {
+        fail("the noise", options.noise, "0 or more");
+    }
+    if (options.maxLevel && (*options.maxLevel < 1 || *options.maxLevel > 13)) {
+        fail("the finest level", *options.maxLevel, "1 to 13");
+    }
+    if (options.tension && !(*options.tension >= 0.01 && *options.tension <= 1e4)) {
+        fail("the tension", *options.tension, "0.01 to 10000");
+    }
+}
+
+void checkInside(const ScatteredPoints& points, const Rectangle& r) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double x = points.x[i];
+        const double y = points.y[i];
+        if (x >= r.x0 && x <= r.x1 && y >= r.y0 && y <= r.y1) continue;
+        std::string message = "the place (" + std::to_string(x) + ", ";
+        message +=
+            std::to_string(y) + ")" + lineOfPoint(points, i) + " is outside the rectangle from (";
+        message += std::to_string(r.x0) + ", " + std::to_string(r.y0) + ") to (";
+        message += std::to_string(r.x1) + ", " + std::to_string(r.y1) + "); expected all inside";
+        throw Error(ErrorKind::Input, message);
+    }
+}
 
 UnitPoints makeUnitPoints(const MergedPoints& merged, const Rectangle& rectangle) {
     const ScatteredPoints& points = merged.points;
