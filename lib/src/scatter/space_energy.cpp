@@ -89,6 +89,12 @@ void negativeLaplacian(const double* from, double* to, int margin) {
     }
 }
 
+/// A row along z among those of the cube.
+std::size_t rowOfCube(int x, int y) {
+    const int row = x * kCubeSide + y;
+    return static_cast<std::size_t>(row);
+}
+
 /// The bits of the rows along z of the cube around a block.
 std::array<unsigned, kCubeSide * kCubeSide> rowsAround(const SpaceNet& net, std::size_t block) {
     std::array<unsigned, kCubeSide * kCubeSide> rows{};
@@ -106,11 +112,11 @@ std::array<unsigned, kCubeSide * kCubeSide> rowsAround(const SpaceNet& net, std:
             for (int y = 0; y < kCubeSide; ++y) {
                 const int b = y - kAround - step[1] * SpaceNet::kSide;
                 if (b < 0 || b >= SpaceNet::kSide) continue;
-                const unsigned bits = from[static_cast<std::size_t>(a * SpaceNet::kSide + b)];
+                const int row = a * SpaceNet::kSide + b;
+                const unsigned bits = from[static_cast<std::size_t>(row)];
                 const int shift = kAround + step[2] * SpaceNet::kSide;
-                rows[static_cast<std::size_t>(x * kCubeSide + y)] |=
-                    shift < 0 ? bits >> static_cast<unsigned>(-shift)
-                              : bits << static_cast<unsigned>(shift);
+                rows[rowOfCube(x, y)] |= shift < 0 ? bits >> static_cast<unsigned>(-shift)
+                                                   : bits << static_cast<unsigned>(shift);
             }
         }
     }
@@ -165,9 +171,7 @@ void SpaceEnergy::addBorderBlock(std::size_t block, const double* cube, double* 
                 const double* const from = cube + (x * kCubeSide + y) * kCubeRow;
                 for (std::size_t t = 0; t < all.count; ++t) {
                     const DifferenceTerm& term = all.terms[t];
-                    there &=
-                        rows[static_cast<std::size_t>((x + term.x) * kCubeSide + y + term.y)] >>
-                        term.z;
+                    there &= rows[rowOfCube(x + term.x, y + term.y)] >> term.z;
                     if (diagonal) continue;
                     const double* const at = from + term.offset;
                     for (std::size_t z = 0; z < kEnd; ++z) row[z] += term.factor * at[z];
@@ -207,11 +211,9 @@ void SpaceEnergy::addTo(std::span<const double> x, std::span<double> y) const {
         std::array<double, kCubeNumbers>& thrice = cube;
         std::array<double, SpaceNet::kBlock> first;
         const auto inner = [&](const auto& numbers, std::size_t k) {
-            return numbers[static_cast<std::size_t>(
-                ((static_cast<int>(k / 64) + kAround) * kCubeSide + static_cast<int>(k / 8 % 8) +
-                 kAround) *
-                    kCubeRow +
-                static_cast<int>(k % 8) + kAround)];
+            const std::size_t row = rowOfCube(static_cast<int>(k / 64) + kAround,
+                                              static_cast<int>(k / 8 % 8) + kAround);
+            return numbers[row * kCubeRow + k % 8 + kAround];
         };
         negativeLaplacian(cube.data(), once.data(), 1);
         for (std::size_t k = 0; k < SpaceNet::kBlock; ++k) first[k] = inner(once, k);

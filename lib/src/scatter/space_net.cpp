@@ -17,6 +17,12 @@ std::uint64_t keyOfBlock(const SpaceNet::Place& place) {
     return part(0) << (2 * kKeyBits) | part(1) << kKeyBits | part(2);
 }
 
+/// The row of a place in its block, [x][y].
+std::size_t rowInBlock(const SpaceNet::Place& place) {
+    const int row = (place[0] & 7) * SpaceNet::kSide + (place[1] & 7);
+    return static_cast<std::size_t>(row);
+}
+
 /// The cells along z that are near, as a row of bits: bit 32 is the row's own first cell.
 std::uint64_t spreadBits(unsigned row, int reach) {
     std::uint64_t bits = std::uint64_t(row) << 32U;
@@ -57,7 +63,7 @@ void SpaceNet::addRow(const Place& row, unsigned bits) {
     const auto [entry, isNew] = mIndex.try_emplace(key, static_cast<std::int32_t>(mBlocks.size()));
     if (isNew) mBlocks.push_back({key, {}});
     auto& rows = mBlocks[static_cast<std::size_t>(entry->second)].rows;
-    auto& there = rows[static_cast<std::size_t>((row[0] & 7) * kSide + (row[1] & 7))];
+    auto& there = rows[rowInBlock(row)];
     there = static_cast<std::uint8_t>(there | bits);
 }
 
@@ -69,9 +75,7 @@ std::int32_t SpaceNet::blockOf(const Place& place) const {
 bool SpaceNet::contains(const Place& place) const {
     const std::int32_t block = blockOf(place);
     if (block < 0) return false;
-    const unsigned row =
-        mBlocks[static_cast<std::size_t>(block)]
-            .rows[static_cast<std::size_t>((place[0] & 7) * kSide + (place[1] & 7))];
+    const unsigned row = mBlocks[static_cast<std::size_t>(block)].rows[rowInBlock(place)];
     return (row >> static_cast<unsigned>(place[2] & 7) & 1U) != 0;
 }
 

@@ -136,7 +136,7 @@ class LeafSampler {
                         bumpHeight({low[0] + x * voxel - at[0], low[1] + y * voxel - at[1],
                                     low[2] + z * voxel - at[2]},
                                    radius);
-                    const auto i = static_cast<std::size_t>((x * 8 + y) * 8 + z);
+                    const openvdb::Index i = FloatLeaf::coordToOffset(openvdb::Coord(x, y, z));
                     for (std::size_t c = 0; c < bumps.sizes.size(); ++c) {
                         values[c * FloatLeaf::SIZE + i] += height * bumps.sizes[c][point];
                     }
