@@ -57,27 +57,13 @@ struct GridSolidRequest {
 };
 
 std::optional<Threshold> readThreshold(const CommandLine& line, bool isArray) {
-    const auto text = line.text("threshold");
-    if (!text) return std::nullopt;
-    const auto parts = split(*text, ',');
-    OptionValues values;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        values.set(i == 0 ? "low" : "high", std::string(parts[i]));
-    }
-    const auto number = [&](const char* name) {
-        try {
-            return values.number(name, {}, 0);
-        } catch (const Error&) {
-            line.fail("threshold", "a number, or two with a comma between them");
-        }
-    };
+    const auto numbers =
+        line.numbers("threshold", 1, 2, "a number, or two with a comma between them");
+    if (!numbers) return std::nullopt;
     Threshold threshold;
-    if (parts.empty() || parts.size() > 2) {
-        line.fail("threshold", "a number, or two with a comma between them");
-    }
-    threshold.low = number("low");
-    if (parts.size() == 2) {
-        threshold.high = number("high");
+    threshold.low = numbers->front();
+    if (numbers->size() == 2) {
+        threshold.high = numbers->back();
         if (!isArray) line.fail("threshold", "one number for a .vdb file");
         if (!(threshold.low < threshold.high)) {
             line.fail("threshold", "the first number to be the lower one");

@@ -31,20 +31,11 @@ bool holdsValuesBeside(const fs::path& path) {
 }
 
 std::optional<std::array<double, 2>> readRange(const CommandLine& line) {
-    const auto given = line.text("range");
-    if (!given) return std::nullopt;
-    const auto parts = split(*given, ',');
-    OptionValues values("option --");
-    std::array<double, 2> range{};
-    if (parts.size() == 2) {
-        // Each of them as a number of its own.
-        for (std::size_t i = 0; i < 2; ++i) {
-            values.set("range", std::string(parts[i]));
-            range[i] = values.number("range", kAnyPlace, 0);
-        }
-        if (range[0] < range[1]) return range;
-    }
-    line.fail("range", "two numbers separated by a comma, the lower one first, as in 0,1");
+    const std::string expected = "two numbers separated by a comma, the lower one first, as in 0,1";
+    const auto range = line.numbers("range", 2, 2, expected, kAnyPlace);
+    if (!range) return std::nullopt;
+    if (!((*range)[0] < (*range)[1])) line.fail("range", expected);
+    return std::array{(*range)[0], (*range)[1]};
 }
 
 std::optional<openvdb::CoordBBox> readBox(const CommandLine& line) {

@@ -4,6 +4,7 @@
 #include "commands.h"
 #include "density_report.h"
 #include "fit_output.h"
+#include "fit_volume.h"
 #include "mesh_output.h"
 #include "standard_streams.h"
 #include "volume_options.h"
@@ -18,6 +19,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -34,11 +36,13 @@ const CommandTable& fitTable() {
             "makes of them the smoothest sum of B-spline surfaces that has these values. It is "
             "twice "
             "continuously differentiable, and written as Bézier patches, samples, a mesh, a "
-            "picture, or the solid under it.",
+            "picture, or the solid under it. With --volume the places are in space, and the "
+            "values become grids.",
             {{"POINTS", "A table: .csv .xyz .txt, or .npy with a row for each point."}},
             {
                 {"columns", 0, "X,Y,VALUE,...", "x, y and all others",
-                 "The columns to take, by name or number from 1.", "Points"},
+                 "The columns to take, by name or number from 1; with --volume z comes after y.",
+                 "Points"},
                 {"rectangle", 0, "X0,Y0,X1,Y1", "of the points",
                  "What the surface covers; all points have to be in it.", "Points"},
                 {"tolerance", 0, "T", "1e-12",
@@ -51,13 +55,16 @@ const CommandTable& fitTable() {
                  "differs from them by so much.",
                  "Surface"},
                 {"max-level", 0, "K", "from the data",
-                 "At most 2^K cells along the longer side, 1 to 13.", "Surface"},
+                 "At most 2^K cells along the longer side, 1 to 13; 1 to 16 with --volume.",
+                 "Surface"},
                 {"levels", 0, "A..B", "all",
                  "Sum up levels A to B only, as counted from 1: 1..3 leaves detail away.",
                  "Surface"},
-                {"tension", 0, "T", "the most likely",
+                {"tension", 0, "T", "the most likely, or 2",
                  "The surface is stiff within 1/T, and like a membrane farther off, in units of "
-                 "the root of the rectangle's area; 0.01 to 10000.",
+                 "the root of the rectangle's area, or of the longest side of a volume's box; 0.01 "
+                 "to "
+                 "10000.",
                  "Surface"},
             },
             {
@@ -65,7 +72,10 @@ const CommandTable& fitTable() {
                 {"bandvox fit points.csv -o surface.npy --samples 1001", "An array of samples."},
                 {"bandvox fit terrain.csv -o terrain.vdb -r 500 --smooth 0.2",
                  "The solid under a terrain, whose heights were measured to 0.2."},
+                {"bandvox fit cloud.csv --volume -o field.vdb -r 200",
+                 "Values at places in space."},
             }};
+        for (const OptionEntry& entry : fitVolumeEntries()) made.options.push_back(entry);
         for (const OptionEntry& entry : fitOutputEntries()) made.options.push_back(entry);
         return made;
     }();
@@ -89,19 +99,15 @@ std::vector<std::string> wordsIn(const std::string& text) {
     return words;
 }
 
-Rectangle readRectangle(const CommandLine& line, const std::string& text) {
-    std::array<double, 4> numbers{};
-    const std::vector<std::string> words = wordsIn(text);
-    bool isRectangle = words.size() == numbers.size();
-    for (std::size_t i = 0; isRectangle && i < numbers.size(); ++i) {
-        const char* const end = words[i].data() + words[i].size();
-        const auto [at, status] = std::from_chars(words[i].data(), end, numbers[i]);
-        isRectangle = status == std::errc() && at == end && std::isfinite(numbers[i]);
+std::optional<Rectangle> readRectangle(const CommandLine& line) {
+    const std::string expected = "X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1";
+    const auto n = line.numbers("rectangle", 4, 4, expected);
+    if (!n) return std::nullopt;
+    const Rectangle rectangle{(*n)[0], (*n)[1], (*n)[2], (*n)[3]};
+    if (!(rectangle.x0 < rectangle.x1 && rectangle.y0 < rectangle.y1)) {
+        line.fail("rectangle", expected);
     }
-    if (!isRectangle || numbers[0] >= numbers[2] || numbers[1] >= numbers[3]) {
-        line.fail("rectangle", "X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1");
-    }
-    return {numbers[0], numbers[1], numbers[2], numbers[3]};
+    return rectangle;
 }
 
 std::array<int, 2> readLevels(const CommandLine& line, const std::string& text) {
@@ -124,7 +130,7 @@ FitRequest parseFit(const CommandLine& line) {
     request.input = line.positional(0);
     if (const auto text = line.text("columns")) request.columns.columns = wordsIn(*text);
     FitSurfaceOptions& fit = request.fit;
-    if (const auto text = line.text("rectangle")) fit.rectangle = readRectangle(line, *text);
+    fit.rectangle = readRectangle(line);
     request.hasTolerance = line.has("tolerance");
     fit.tolerance = line.number("tolerance", {.low = 0, .high = 1}, fit.tolerance);
     if (line.has("smooth")) fit.noise = line.number("smooth", {.low = 0, .lowOpen = true}, 1);
@@ -165,6 +171,25 @@ void sayFit(CommandRun& run, const SurfaceFit& fit) {
     }
 }
 
+// What the surface does between the points is not what they say if they are noisy or far apart.
+void judgeShape(CommandRun& run, const FitRequest& request, const SurfaceFit& fit) {
+    constexpr double kFar = 0.5;
+    if (fit.swing > kFar) {
+        run.say("         it goes beyond the values by " + formatNumber(fit.swing, 2) +
+                " of their range: noisy values need --smooth, and points far apart a --tension "
+                "of more than " +
+                formatNumber(fit.tension, 3));
+    }
+    constexpr double kNearly = 0.1;
+    if (request.fit.noise > 0 && !(std::abs(fit.noiseLeft - 1) <= kNearly)) {
+        std::string message = "the surface differs from the values by " +
+                              formatNumber(fit.noiseLeft * request.fit.noise, 3);
+        message += " in the root of the mean square; expected " +
+                   formatNumber(request.fit.noise, 3) + ", by --smooth";
+        run.warn({message}, ErrorKind::Result);
+    }
+}
+
 // What the user asked for has to be there; what holds otherwise is worth a warning.
 void judgeFit(CommandRun& run, const FitRequest& request, const SurfaceFit& fit) {
     const double largest = fit.report.back().largest;
@@ -183,18 +208,35 @@ BsplineSurface chosenSum(const FitRequest& request, SurfaceFit& fit) {
     if (!request.levels) return fit.sum();
     const auto count = static_cast<int>(fit.levels.size());
     const auto [first, last] = *request.levels;
-    if (first > count) {
-        throw Error(ErrorKind::Usage, "option --levels begins at " + std::to_string(first) +
-                                          ", and there are " + std::to_string(count) +
-                                          " levels; expected one of them");
+    if (last > count) {
+        throw Error(ErrorKind::Usage, "option --levels is " + std::to_string(first) + ".." +
+                                          std::to_string(last) + ", and the surface has " +
+                                          formatCount(count, "level", "levels") +
+                                          "; expected some of them");
     }
-    return fit.sum(static_cast<std::size_t>(first) - 1,
-                   static_cast<std::size_t>(std::min(last, count)) - 1);
+    return fit.sum(static_cast<std::size_t>(first) - 1, static_cast<std::size_t>(last) - 1);
+}
+
+// A patch takes some 800 bytes of text.
+void requirePatches(const FitRequest& request, const BsplineSurface& surface) {
+    constexpr std::int64_t kMostUnasked = 1'000'000;
+    const std::int64_t patches = std::int64_t{surface.cells()[0]} * surface.cells()[1];
+    if (request.output.kind != FitOutput::Kind::Patches || request.fit.maxLevel ||
+        patches <= kMostUnasked) {
+        return;
+    }
+    throw Error(ErrorKind::Usage,
+                "the surface has " + std::to_string(patches) + " patches, some " +
+                    formatBytes(patches * 800) + " of a .bpt file; expected " +
+                    std::to_string(kMostUnasked) +
+                    " at most, unless --max-level is given, or --levels leaves detail away");
 }
 
 }  // namespace
 
 void runFit(const CommandLine& line) {
+    if (line.has("volume")) return runFitVolume(line);
+    refuseOptions(line, {"reach"}, "without --volume");
     const FitRequest request = parseFit(line);
     CommandRun run(line);
     AtomicFile output(request.output.path);
@@ -209,8 +251,10 @@ void runFit(const CommandLine& line) {
     }
     sayFit(run, fit);
     judgeFit(run, request, fit);
+    judgeShape(run, request, fit);
     const BsplineSurface surface = chosenSum(request, fit);
     fit.levels.clear();
+    requirePatches(request, surface);
     writeFit(run, output, request.output, {surface, named.names, request.input});
 }
 

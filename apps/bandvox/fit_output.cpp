@@ -1,6 +1,8 @@
 #include "fit_output.h"
 
+#include "color_grid.h"
 #include "density_report.h"
+#include "fit_columns.h"
 #include "mesh_output.h"
 #include "standard_streams.h"
 #include "volume_options.h"
@@ -9,6 +11,7 @@
 #include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/mesh/write_mesh.h>
 #include <bandvox/render/image.h>
+#include <bandvox/scatter/colored_height_field.h>
 #include <bandvox/scatter/height_field_source.h>
 #include <bandvox/scatter/write_surface.h>
 
@@ -24,21 +27,6 @@ namespace {
 constexpr int kStandardSamples = 257;
 constexpr double kStandardMargin = 0.1;
 
-/// The index of the first of three columns that are colours, or -1.
-int redColumn(const std::vector<std::string>& names) {
-    const std::array<std::array<const char*, 3>, 3> known{
-        {{"r", "g", "b"}, {"red", "green", "blue"}, {"cd.r", "cd.g", "cd.b"}}};
-    for (std::size_t i = 0; i + 2 < names.size(); ++i) {
-        for (const auto& three : known) {
-            if (lowerCase(names[i]) == three[0] && lowerCase(names[i + 1]) == three[1] &&
-                lowerCase(names[i + 2]) == three[2]) {
-                return static_cast<int>(i);
-            }
-        }
-    }
-    return -1;
-}
-
 /// Samples along x and y, so many along the longer side, as far apart along both.
 std::array<int, 2> samplesOf(const BsplineSurface& surface, int longer) {
     const double width = surface.rectangle().width();
@@ -48,6 +36,24 @@ std::array<int, 2> samplesOf(const BsplineSurface& surface, int longer) {
         return std::max(2, static_cast<int>(std::lround(side / step)) + 1);
     };
     return {count(width), count(height)};
+}
+
+/// The colours of the surface on the lattice of its solid's density.
+openvdb::GridBase::Ptr colorsOfSolid(CommandRun& run, const FitOutput& request,
+                                     const FittedSurface& fitted, const DensityResult& density,
+                                     int red) {
+    const Rectangle& r = fitted.surface.rectangle();
+    const double longer = std::max(r.width(), r.height());
+    constexpr double kMostSamples = 4097;
+    // A sample for each voxel along the surface's rectangle.
+    const double wanted = std::ceil(longer / density.grid->voxelSize()[0]) + 1;
+    const auto samples =
+        samplesOf(fitted.surface, static_cast<int>(std::clamp(wanted, 2.0, kMostSamples)));
+    const ColoredMesh mesh = coloredHeightField(
+        std::filesystem::path(fitted.input).filename().string(), fitted.surface, samples, red);
+    const ColorResult colors = makeColors(run, mesh, density, request.density);
+    sayColors(run, colors);
+    return colors.grid;
 }
 
 void writeSolid(CommandRun& run, AtomicFile& output, const FitOutput& request,
@@ -68,8 +74,11 @@ void writeSolid(CommandRun& run, AtomicFile& output, const FitOutput& request,
                formatNumber(density.metadata.closureError, 2) + " measured by closure, tolerance " +
                    formatNumber(density.metadata.tolerance, 2));
     run.warn(density.warnings, ErrorKind::Result);
-    run.writeOutput(output,
-                    [&](AtomicFile& file) { writeVdb(file, {density.grid}, request.write); });
+    openvdb::GridCPtrVec grids{density.grid};
+    if (const int red = redColumn(fitted.names); red >= 0) {
+        grids.push_back(colorsOfSolid(run, request, fitted, density, red));
+    }
+    run.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, grids, request.write); });
 }
 
 FitOutput::Kind kindOf(const std::filesystem::path& path) {
@@ -92,8 +101,8 @@ std::vector<OptionEntry> fitOutputEntries() {
          "What to write: .bpt Bézier patches of the first value, which are the surface exactly; "
          ".npy samples of all values as doubles, [x][y][value]; .exr height as Z, with normals and "
          "positions; .obj .ply .stl .gltf .glb a mesh with normals; .vdb the density of the solid "
-         "under the surface. Columns named r, g and b are the colours of meshes and pictures. "
-         "Needed.",
+         "under the surface. Columns named r, g and b are the colours of meshes and pictures, and "
+         "the grid Cd of a .vdb file. Needed.",
          "Output"},
         {"samples", 0, "N", std::to_string(kStandardSamples),
          "Samples along the longer side of a mesh, a picture or an array, from border to border.",

@@ -41,8 +41,7 @@ struct FittedSurface {
     std::string input;
 };
 
-/// Writes the surface, the last step of the command. Colours are columns named r, g and b, or red,
-/// green and blue, or Cd.r, Cd.g and Cd.b, one after another.
+/// Writes the surface, the last step of the command, with the colours that redColumn finds.
 void writeFit(CommandRun& run, AtomicFile& output, const FitOutput& request,
               const FittedSurface& fitted);
 

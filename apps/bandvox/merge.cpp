@@ -82,19 +82,11 @@ struct MergeRequest {
 };
 
 std::vector<double> readWeights(const CommandLine& line, std::size_t inputs) {
-    const auto given = line.text("weights");
-    if (!given) return {};
-    std::vector<double> weights;
-    for (const std::string_view part : split(*given, ',')) {
-        OptionValues one;
-        one.set("weights", std::string(part));
-        weights.push_back(one.number("weights", {.low = -1e6, .high = 1e6}, 1));
-    }
-    if (weights.size() != inputs) {
-        line.fail("weights", formatCount(static_cast<std::int64_t>(inputs), "number", "numbers") +
-                                 " separated by commas, one for each input");
-    }
-    return weights;
+    const std::string expected =
+        formatCount(static_cast<std::int64_t>(inputs), "number", "numbers") +
+        " from -1e6 to 1e6 separated by commas, one for each input";
+    return line.numbers("weights", inputs, inputs, expected, {.low = -1e6, .high = 1e6})
+        .value_or(std::vector<double>());
 }
 
 MergeRequest parseMerge(const CommandLine& line) {

@@ -118,6 +118,22 @@ std::optional<openvdb::Vec3d> OptionValues::vector(const std::string& name,
     return vector;
 }
 
+std::optional<std::vector<double>> OptionValues::numbers(const std::string& name, std::size_t least,
+                                                         std::size_t most,
+                                                         const std::string& expected,
+                                                         const Range& each) const {
+    const auto given = textOrDefault(name);
+    if (!given) return std::nullopt;
+    std::vector<double> numbers;
+    for (const std::string_view part : split(*given, ',')) {
+        const auto value = parseNumber(part);
+        if (!value || !each.contains(*value)) fail(name, expected);
+        numbers.push_back(*value);
+    }
+    if (numbers.size() < least || numbers.size() > most) fail(name, expected);
+    return numbers;
+}
+
 std::optional<std::vector<int>> OptionValues::wholeNumbers(const std::string& name,
                                                            std::size_t count,
                                                            char separator) const {

@@ -66,6 +66,10 @@ class OptionValues {
     int wholeNumber(const std::string& name, int low, int high, int fallback) const;
     /// Three numbers separated by commas.
     std::optional<openvdb::Vec3d> vector(const std::string& name, const Range& range = {}) const;
+    /// `least` to `most` numbers separated by commas; `expected` is what the error says of them.
+    std::optional<std::vector<double>> numbers(const std::string& name, std::size_t least,
+                                               std::size_t most, const std::string& expected,
+                                               const Range& each = {}) const;
     /// Whole numbers separated by a character.
     std::optional<std::vector<int>> wholeNumbers(const std::string& name, std::size_t count,
                                                  char separator) const;

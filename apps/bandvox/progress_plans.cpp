@@ -91,7 +91,9 @@ std::vector<ExpectedStage> expectedStages(const CommandLine& line) {
         stages = {{"read", 6}, {"preparing", 6}, {"drawing", 80}};
     } else if (command == "fit") {
         stages = {{"read points", 10}, {"fitting", 60}};
-        if (extensionOf(line.text("output").value_or("")) == ".vdb") {
+        if (line.has("volume")) {
+            append(stages, {{"sampling", 30}});
+        } else if (extensionOf(line.text("output").value_or("")) == ".vdb") {
             append(stages, {{"band-limiting", 60}, {"assembling", 4}});
         }
     } else if (command == "view") {

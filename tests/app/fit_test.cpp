@@ -128,7 +128,7 @@ TEST_F(Fit, WritesTheSolidUnderTheSurface) {
     ASSERT_EQ(result.status, 0) << result.err;
     openvdb::initialize();
     const auto grids = readVdb(*sFolder / "solid.vdb");
-    ASSERT_EQ(grids.size(), 1U);
+    ASSERT_EQ(grids.size(), 2U);
     const auto density = openvdb::gridPtrCast<openvdb::FloatGrid>(grids[0]);
     // The integral of the function over the square.
     const double volume = 1 + 0.3 * (1 - std::cos(3.0)) / 3 * std::sin(2.0) / 2;
@@ -141,6 +141,9 @@ TEST_F(Fit, LeavesDetailAway) {
     EXPECT_EQ(read("coarse.bpt").substr(0, 3), "16\n");
     EXPECT_EQ(fit({"heights.csv", "-o", "none.bpt", "--levels", "30..31"}).status, 2);
     EXPECT_EQ(fit({"heights.csv", "-o", "none.bpt", "--levels", "3..2"}).status, 2);
+    const RunResult beyond = fit({"heights.csv", "-o", "none.bpt", "--levels", "1..99"});
+    EXPECT_EQ(beyond.status, 2);
+    EXPECT_NE(beyond.err.find("--levels is 1..99"), std::string::npos) << beyond.err;
 }
 
 TEST_F(Fit, SaysIfTheToleranceIsNotReached) {
@@ -170,9 +173,13 @@ TEST_F(Fit, RefusesBadTables) {
     expectRefused("t.xyz", "1 2 3\n1 2 3\n1 2 3\n", "all at (1, 2)");
     expectRefused("t.csv", "", "no points");
     expectRefused("t.csv", "1,2\n3,4\n", "2 columns");
-    expectRefused("t.csv", "0,0,1\n1,0,2\n0,1,3\n1,0,9\n", "(1, 0)");
-    expectRefused("t.csv", "0,0,1\n1,0,2\n0,2,3\n", "outside the rectangle", 3,
+    expectRefused("t.csv", "0,0,1\n1,0,2\n0,1,3\n1,0,9\n",
+                  "(1, 0) has values from 2 (line 2) to 9 (line 4)");
+    expectRefused("t.csv", "0,0,1\n1,0,2\n0,2,3\n", "(line 3) is outside the rectangle", 3,
                   {"--rectangle", "0,0,1,1"});
+    // A first line with a number is one of numbers, if with a slip.
+    expectRefused("t.csv", "0,0,1o\n1,0,2\n0,1,3\n", "line 1 has \"1o\"");
+    expectRefused("t.csv", "x,y\n", "2 columns");
     expectRefused("t.csv", "0,0,1\n1,0,2\n0,2,3\n", "--rectangle", 2, {"--rectangle", "0,0,0,1"});
     expectRefused("t.foo", "0,0,1\n", "unknown kind");
     expectRefused("t.npy", "not an array", "no .npy file");
@@ -180,6 +187,120 @@ TEST_F(Fit, RefusesBadTables) {
     announced += "{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000, 3), }";
     announced.resize(128, ' ');
     expectRefused("t.npy", announced + std::string(240, '\0'), "announces 1000000000 rows");
+}
+
+TEST_F(Fit, CarriesColorsThroughToTheSolid) {
+    const RunResult result = fit({"heights.csv", "-o", "colored.vdb", "-r", "40"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    openvdb::initialize();
+    const auto grids = readVdb(*sFolder / "colored.vdb");
+    ASSERT_EQ(grids.size(), 2U);
+    const auto colors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids[1]);
+    ASSERT_TRUE(colors);
+    EXPECT_EQ(colors->getName(), "Cd");
+    // Around the surface the colour is (x, y, 0.5).
+    const openvdb::Vec3d place(0.4, 0.6, heightAt(0.4, 0.6));
+    const auto voxel = openvdb::Coord::round(colors->worldToIndex(place));
+    auto at = colors->getConstAccessor();
+    ASSERT_TRUE(at.isValueOn(voxel));
+    EXPECT_NEAR(at.getValue(voxel)[0], 0.4, 0.03);
+    EXPECT_NEAR(at.getValue(voxel)[1], 0.6, 0.03);
+    EXPECT_NEAR(at.getValue(voxel)[2], 0.5, 0.01);
+    ASSERT_EQ(fit({"heights.csv", "-o", "colored.ply", "--samples", "9"}).status, 0);
+    EXPECT_NE(read("colored.ply").find("property uchar red"), std::string::npos);
+}
+
+TEST_F(Fit, SaysIfTheNoiseIsNotReached) {
+    EXPECT_NE(fit({"heights.csv", "-o", "s.bpt", "--smooth", "5"}).err.find("by --smooth"),
+              std::string::npos);
+    EXPECT_EQ(fit({"heights.csv", "-o", "s.bpt", "--smooth", "5", "--strict"}).status, 4);
+}
+
+TEST_F(Fit, HintsAtNoise) {
+    std::string noisy;
+    for (int i = 0; i < 400; ++i) {
+        const double x = std::fmod(i * 0.754877666246693, 1.0);
+        const double y = std::fmod(i * 0.569840290998053, 1.0);
+        noisy += std::to_string(x) + "," + std::to_string(y) + "," +
+                 std::to_string(std::fmod(i * 0.618033988749895, 1.0)) + "\n";
+    }
+    writeText(*sFolder / "noisy.csv", noisy);
+    const RunResult result = fit({"noisy.csv", "-o", "noisy.bpt"});
+    EXPECT_EQ(result.status, 0);
+    EXPECT_NE(result.err.find("need --smooth"), std::string::npos) << result.err;
+    EXPECT_EQ(fit({"heights.csv", "-o", "h.bpt"}).err.find("need --smooth"), std::string::npos);
+}
+
+std::string cloudOfPoints() {
+    std::ostringstream text;
+    text.precision(17);
+    text << "x,y,z,temperature,r,g,b,vel.x,vel.y,vel.z\n";
+    for (int i = 0; i < 400; ++i) {
+        const double x = std::fmod(i * 0.819172513396164, 1.0);
+        const double y = std::fmod(i * 0.671043606703789, 1.0);
+        const double z = std::fmod(i * 0.549700477901970, 1.0);
+        text << x << "," << y << "," << z << "," << heightAt(x, y) + z << "," << x << "," << y
+             << "," << z << "," << -y << "," << x << ",0\n";
+    }
+    return text.str();
+}
+
+TEST_F(Fit, MakesGridsOfPlacesInSpace) {
+    writeText(*sFolder / "cloud.csv", cloudOfPoints());
+    const RunResult result =
+        fit({"cloud.csv", "--volume", "-o", "field.vdb", "-r", "20", "--stats", "stats.json"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    openvdb::initialize();
+    const auto grids = readVdb(*sFolder / "field.vdb");
+    ASSERT_EQ(grids.size(), 3U);
+    const auto scalars = openvdb::gridPtrCast<openvdb::FloatGrid>(grids[0]);
+    const auto colors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids[1]);
+    const auto speeds = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids[2]);
+    ASSERT_TRUE(scalars && colors && speeds);
+    EXPECT_EQ(scalars->getName(), "temperature");
+    EXPECT_EQ(colors->getName(), "Cd");
+    EXPECT_EQ(colors->getVectorType(), openvdb::VEC_INVARIANT);
+    EXPECT_EQ(speeds->getName(), "vel");
+    EXPECT_EQ(speeds->getVectorType(), openvdb::VEC_CONTRAVARIANT_RELATIVE);
+    const openvdb::Coord voxel(10, 8, 12);
+    const openvdb::Vec3d place = scalars->indexToWorld(voxel);
+    EXPECT_NEAR(scalars->tree().getValue(voxel), heightAt(place[0], place[1]) + place[2], 5e-3);
+    EXPECT_NEAR(colors->tree().getValue(voxel)[1], place[1], 5e-3);
+    EXPECT_NEAR(speeds->tree().getValue(voxel)[0], -place[1], 5e-3);
+    EXPECT_FALSE(scalars->tree().isValueOn(openvdb::Coord(200, 0, 0)));
+    const auto stats = nlohmann::json::parse(read("stats.json"));
+    EXPECT_EQ(stats["counts"]["points"], 400);
+    EXPECT_LE(stats["counts"]["largest"], 1e-12);
+}
+
+TEST_F(Fit, TakesSomeColumnsOfPlacesInSpace) {
+    writeText(*sFolder / "cloud.csv", cloudOfPoints());
+    const RunResult one =
+        fit({"cloud.csv", "--volume", "--columns", "x,y,z,temperature", "-o", "one.vdb",
+             "--voxel-size", "0.1", "--reach", "0.3", "--smooth", "0.01", "--half"});
+    ASSERT_EQ(one.status, 0) << one.err;
+    EXPECT_NE(one.err.find("within 0.3 of the points"), std::string::npos) << one.err;
+    EXPECT_EQ(fit({"cloud.csv", "--volume", "-o", "one.ply"}).status, 2);
+    EXPECT_EQ(fit({"cloud.csv", "--volume", "-o", "one.vdb", "--base", "0"}).status, 2);
+    EXPECT_EQ(fit({"heights.csv", "-o", "one.vdb", "--reach", "1"}).status, 2);
+    EXPECT_EQ(fit({"cloud.csv", "--volume", "-o", "one.vdb", "--reach", "100"}).status, 2);
+}
+
+TEST_F(Fit, RefusesBadTablesOfPlacesInSpace) {
+    const auto refuse = [](const std::string& text, const std::string& words) {
+        const TemporaryFolder folder;
+        writeText(folder / "t.csv", text);
+        const RunResult result =
+            runBandvox({"fit", "t.csv", "--volume", "-o", "out.vdb"}, {.folder = folder.path()});
+        EXPECT_EQ(result.status, 3) << text;
+        EXPECT_NE(result.err.find(words), std::string::npos) << result.err;
+        EXPECT_EQ(folder.contents(), Names{"t.csv"});
+    };
+    refuse("0,0,1\n1,0,2\n", "3 columns; expected 4 at least: x, y, z and a value");
+    refuse("x,y,z,t\n0,0,0,1\n1,0,0,hot\n", "line 3 has \"hot\" in column 4, t");
+    refuse("0,0,0,1\n1,0,0,2\n1,0,0,3\n", "(1, 0, 0) has values from 2 (line 2) to 3 (line 3)");
+    refuse("1,2,3,4\n", "two places at least");
+    refuse("1,2,3,4\n1,2,inf,4\n", "line 2 has inf as z");
 }
 
 TEST_F(Fit, ReadsArraysOfNumpy) {
@@ -208,8 +329,8 @@ TEST_F(Fit, RunsWhatItsPageShows) {
     const RunResult result =
         runProgram({"/bin/sh", "-e", "-c", path + block}, {.folder = folder.path()});
     EXPECT_EQ(result.status, 0) << result.err;
-    for (const char* name :
-         {"surface.bpt", "surface.npy", "surface.ply", "surface.exr", "solid.vdb", "simple.bpt"}) {
+    for (const char* name : {"surface.bpt", "surface.npy", "surface.ply", "surface.exr",
+                             "solid.vdb", "simple.bpt", "field.vdb"}) {
         EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
     }
 }

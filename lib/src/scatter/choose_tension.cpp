@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace bandvox {
@@ -93,9 +94,14 @@ double chooseTension(const UnitPoints& unit, Progress& progress) {
         progress.throwIfInterrupted();
         found[k] = unlikeliness(few, points, kTensions[k]);
     }
+    // What is no number is no likelihood.
+    for (double& number : found) {
+        if (!std::isfinite(number)) number = std::numeric_limits<double>::max();
+    }
     const double least = *std::min_element(found.begin(), found.end());
+    if (least == std::numeric_limits<double>::max()) return kOtherwise;
     std::size_t chosen = 0;
-    while (!(found[chosen] <= least + 1)) ++chosen;
+    while (found[chosen] > least + 1) ++chosen;
     return kTensions[chosen];
 }
 

@@ -1,5 +1,6 @@
 #include "scatter/fit_problem.h"
 
+#include "scatter/column_scale.h"
 #include "scatter/surface_energy.h"
 
 #include <bandvox/core/error.h>
@@ -29,6 +30,41 @@ double energyOfControl(const EnergyWeights& weights, std::array<double, 2> cell)
 
 }  // namespace
 
+void checkFitOptions(const FitSurfaceOptions& options) {
+    const auto fail = [](const std::string& name, double found, const std::string& expected) {
+        std::string message = name + " of a fit is ";
+        message += std::to_string(found) + "; expected ";
+        message += expected;
+        throw Error(ErrorKind::Usage, message);
+    };
+    if (!(options.tolerance >= 0 && options.tolerance <= 1)) {
+        fail("the tolerance", options.tolerance, "0 to 1");
+    }
+    if (!(options.noise >= 0 && std::isfinite(options.noise))) {
+        fail("the noise", options.noise, "0 or more");
+    }
+    if (options.maxLevel && (*options.maxLevel < 1 || *options.maxLevel > 13)) {
+        fail("the finest level", *options.maxLevel, "1 to 13");
+    }
+    if (options.tension && !(*options.tension >= 0.01 && *options.tension <= 1e4)) {
+        fail("the tension", *options.tension, "0.01 to 10000");
+    }
+}
+
+void checkInside(const ScatteredPoints& points, const Rectangle& r) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double x = points.x[i];
+        const double y = points.y[i];
+        if (x >= r.x0 && x <= r.x1 && y >= r.y0 && y <= r.y1) continue;
+        std::string message = "the place (" + std::to_string(x) + ", ";
+        message +=
+            std::to_string(y) + ")" + lineOfPoint(points, i) + " is outside the rectangle from (";
+        message += std::to_string(r.x0) + ", " + std::to_string(r.y0) + ") to (";
+        message += std::to_string(r.x1) + ", " + std::to_string(r.y1) + "); expected all inside";
+        throw Error(ErrorKind::Input, message);
+    }
+}
+
 UnitPoints makeUnitPoints(const MergedPoints& merged, const Rectangle& rectangle) {
     const ScatteredPoints& points = merged.points;
     UnitPoints unit;
@@ -42,28 +78,13 @@ UnitPoints makeUnitPoints(const MergedPoints& merged, const Rectangle& rectangle
     }
     unit.points = sortPoints(u, v, merged.weight);
     for (int column = 0; column < points.columns; ++column) {
-        double low = points.value(0, column);
-        double high = low;
-        double sum = 0;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            const double value = points.value(i, column);
-            low = std::min(low, value);
-            high = std::max(high, value);
-            sum += value / static_cast<double>(points.size());
-        }
-        const double range = high > low ? high - low : 1;
-        if (!std::isfinite(range) || !std::isfinite(sum)) {
-            throw Error(ErrorKind::Input,
-                        "the values of column " + std::to_string(column + 1) +
-                            " are so far apart that their range is no number; expected less than "
-                            "1.8e308");
-        }
+        const ColumnScale scale = scaleOfColumn(points, column);
         auto& values = unit.values.emplace_back(points.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
-            values[i] = (points.value(unit.points.origin[i], column) - sum) / range;
+            values[i] = (points.value(unit.points.origin[i], column) - scale.mean) / scale.range;
         }
-        unit.mean.push_back(sum);
-        unit.range.push_back(range);
+        unit.mean.push_back(scale.mean);
+        unit.range.push_back(scale.range);
     }
     return unit;
 }

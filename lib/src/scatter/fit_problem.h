@@ -20,6 +20,12 @@ struct UnitPoints {
     std::array<double, 2> side{1, 1};  ///< of the rectangle, in units of the root of its area
 };
 
+/// Throws Error(ErrorKind::Usage) for options out of range.
+void checkFitOptions(const FitSurfaceOptions& options);
+
+/// Throws Error(ErrorKind::Input) for points outside the rectangle.
+void checkInside(const ScatteredPoints& points, const Rectangle& r);
+
 UnitPoints makeUnitPoints(const MergedPoints& merged, const Rectangle& rectangle);
 
 /// The net of a level: its cells are as square as they can be.

@@ -1,5 +1,6 @@
 #include "scatter/fit_problem.h"
 #include "scatter/mend_residual.h"
+#include "scatter/surface_swing.h"
 
 #include <bandvox/core/error.h>
 
@@ -19,40 +20,6 @@ constexpr double kSmall = 1e-7;
 
 /// So few points are worth the smoothest shape even of what is smaller than that.
 constexpr std::size_t kFewPoints = 300;
-
-void checkFitOptions(const FitSurfaceOptions& options) {
-    const auto fail = [](const std::string& name, double found, const std::string& expected) {
-        std::string message = name + " of a fit is ";
-        message += std::to_string(found) + "; expected ";
-        message += expected;
-        throw Error(ErrorKind::Usage, message);
-    };
-    if (!(options.tolerance >= 0 && options.tolerance <= 1)) {
-        fail("the tolerance", options.tolerance, "0 to 1");
-    }
-    if (!(options.noise >= 0 && std::isfinite(options.noise))) {
-        fail("the noise", options.noise, "0 or more");
-    }
-    if (options.maxLevel && (*options.maxLevel < 1 || *options.maxLevel > 13)) {
-        fail("the finest level", *options.maxLevel, "1 to 13");
-    }
-    if (options.tension && !(*options.tension >= 0.01 && *options.tension <= 1e4)) {
-        fail("the tension", *options.tension, "0.01 to 10000");
-    }
-}
-
-void checkInside(const ScatteredPoints& points, const Rectangle& r) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const double x = points.x[i];
-        const double y = points.y[i];
-        if (x >= r.x0 && x <= r.x1 && y >= r.y0 && y <= r.y1) continue;
-        std::string message = "the place (" + std::to_string(x) + ", ";
-        message += std::to_string(y) + ") is outside the rectangle from (";
-        message += std::to_string(r.x0) + ", " + std::to_string(r.y0) + ") to (";
-        message += std::to_string(r.x1) + ", " + std::to_string(r.y1) + "); expected all inside";
-        throw Error(ErrorKind::Input, message);
-    }
-}
 
 using Columns = std::vector<std::vector<double>>;
 
@@ -285,6 +252,7 @@ void Fitting::smooth(int level) {
         (tryStiffness(middle) ? low : high) = middle;
     }
     tryStiffness(low);
+    mFit.noiseLeft = std::sqrt(noiseLeft());
     keepSum(level);
 }
 
@@ -387,13 +355,38 @@ BsplineSurface SurfaceFit::sum(std::size_t first, std::size_t last) const {
 SurfaceFit fitSurface(const ScatteredPoints& points, const FitSurfaceOptions& options,
                       Progress& progress) {
     checkFitOptions(options);
+    if (points.isInSpace()) {
+        throw Error(ErrorKind::Usage, "the points have a z; expected places in a plane");
+    }
     const MergedPoints merged = mergeDuplicates(points, options.noise > 0 ? -1 : options.tolerance);
     const Rectangle rectangle =
         options.rectangle ? *options.rectangle : boundingRectangle(merged.points);
     if (merged.points.size() < 2) boundingRectangle(merged.points);  // refuses
     checkInside(merged.points, rectangle);
-    Fitting fitting(makeUnitPoints(merged, rectangle), options, progress);
-    SurfaceFit fit = fitting.run();
+    const UnitPoints unit = makeUnitPoints(merged, rectangle);
+    const auto fitWith = [&](const FitSurfaceOptions& chosen) {
+        SurfaceFit fit = Fitting(unit, chosen, progress).run();
+        fit.swing = swingOf(fit.levels, merged.points);
+        return fit;
+    };
+    SurfaceFit fit = fitWith(options);
+    // The likely tension looks at points that tell little of a crowd among few others: where the
+    // surface leaves their values far behind, a stiffer one is better.
+    constexpr double kTooFar = 1;
+    constexpr double kMostTension = 1000;
+    constexpr std::size_t kMostPoints = 20000;
+    FitSurfaceOptions stiffer = options;
+    while (!options.tension && options.noise == 0 && merged.points.size() <= kMostPoints &&
+           fit.swing > kTooFar && 4 * fit.tension <= kMostTension) {
+        stiffer.tension = 4 * fit.tension;
+        SurfaceFit other = fitWith(stiffer);
+        if (!(other.swing < fit.swing) ||
+            !(other.report.back().largest <= fit.report.back().largest ||
+              other.report.back().largest <= options.tolerance)) {
+            break;
+        }
+        fit = std::move(other);
+    }
     fit.duplicates = merged.duplicates;
     return fit;
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <optional>
 #include <system_error>
@@ -36,14 +37,16 @@ class PointTaker {
 
     /// The names of what is taken.
     std::string nameOf(std::size_t i) const {
-        if (i < 2) return i == 0 ? "x" : "y";
+        if (i < mPlaces) return i == 0 ? "x" : i == 1 ? "y" : "z";
         if (!mNames.empty()) return mNames[mColumns[i]];
-        return mColumns.size() == 3 ? "value" : "value " + std::to_string(i - 1);
+        if (mColumns.size() == mPlaces + 1) return "value";
+        return "value " + std::to_string(i - mPlaces + 1);
     }
 
-    /// `row`: the numbers of the chosen columns. Calls `fail(what)`, which throws.
+    /// `row`: the numbers of the chosen columns. `line`: where they stand. Calls `fail(what)`,
+    /// which throws.
     template <typename Fail>
-    void add(const std::vector<double>& row, const Fail& fail) {
+    void add(const std::vector<double>& row, std::size_t line, const Fail& fail) {
         for (std::size_t i = 0; i < row.size(); ++i) {
             if (std::isfinite(row[i])) continue;
             std::string message = "has ";
@@ -54,13 +57,17 @@ class PointTaker {
         }
         mPoints.x.push_back(row[0]);
         mPoints.y.push_back(row[1]);
-        mPoints.values.insert(mPoints.values.end(), row.begin() + 2, row.end());
+        if (mPlaces == 3) mPoints.z.push_back(row[2]);
+        mPoints.values.insert(mPoints.values.end(),
+                              row.begin() + static_cast<std::ptrdiff_t>(mPlaces), row.end());
+        mPoints.lines.push_back(static_cast<std::uint32_t>(line));
     }
 
-    NamedPoints take() {
+    NamedPoints take(const std::string& lineWord) {
         NamedPoints result;
-        mPoints.columns = static_cast<int>(mColumns.size()) - 2;
-        for (std::size_t i = 2; i < mColumns.size(); ++i) result.names.push_back(nameOf(i));
+        mPoints.columns = static_cast<int>(mColumns.size() - mPlaces);
+        mPoints.lineWord = lineWord;
+        for (std::size_t i = mPlaces; i < mColumns.size(); ++i) result.names.push_back(nameOf(i));
         result.points = std::move(mPoints);
         return result;
     }
@@ -68,6 +75,7 @@ class PointTaker {
   private:
     std::size_t chosen(const std::string& name, std::size_t width) const;
 
+    std::size_t mPlaces;  // columns of a place
     std::vector<std::string> mNames;
     std::vector<std::size_t> mColumns;
     ScatteredPoints mPoints;
@@ -91,11 +99,12 @@ std::size_t PointTaker::chosen(const std::string& name, std::size_t width) const
 
 PointTaker::PointTaker(const FileContents& file, std::size_t width, std::vector<std::string> names,
                        const PointColumnChoice& choice)
-    : mNames(std::move(names)) {
-    constexpr std::size_t kFewest = 3;
-    if (width < kFewest) {
-        file.fail("has " + std::to_string(width) +
-                  " columns; expected three at least: x, y and a value");
+    : mPlaces(choice.isInSpace ? 3 : 2), mNames(std::move(names)) {
+    const std::size_t fewest = mPlaces + 1;
+    const std::string expected = choice.isInSpace ? "x, y, z and a value" : "x, y and a value";
+    if (width < fewest) {
+        file.fail("has " + std::to_string(width) + " columns; expected " + std::to_string(fewest) +
+                  " at least: " + expected);
     }
     if (!choice.columns.empty()) {
         for (const std::string& name : choice.columns) {
@@ -106,9 +115,9 @@ PointTaker::PointTaker(const FileContents& file, std::size_t width, std::vector<
             }
             mColumns.push_back(column);
         }
-        if (mColumns.size() < kFewest) {
+        if (mColumns.size() < fewest) {
             throw Error(ErrorKind::Usage, std::to_string(mColumns.size()) +
-                                              " columns are chosen; expected x, y and a value");
+                                              " columns are chosen; expected " + expected);
         }
         return;
     }
@@ -118,11 +127,15 @@ PointTaker::PointTaker(const FileContents& file, std::size_t width, std::vector<
         }
         return std::nullopt;
     };
-    const auto x = named("x");
-    const auto y = named("y");
-    mColumns = x && y ? std::vector{*x, *y} : std::vector<std::size_t>{0, 1};
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < mPlaces; ++i) {
+        if (const auto column = named(i == 0 ? "x" : i == 1 ? "y" : "z")) places.push_back(*column);
+    }
+    const bool areNamed = places.size() == mPlaces;
+    for (std::size_t i = 0; i < mPlaces; ++i) mColumns.push_back(areNamed ? places[i] : i);
+    const std::vector<std::size_t> taken = mColumns;
     for (std::size_t i = 0; i < width; ++i) {
-        if (i != mColumns[0] && i != mColumns[1]) mColumns.push_back(i);
+        if (std::find(taken.begin(), taken.end(), i) == taken.end()) mColumns.push_back(i);
     }
 }
 
@@ -132,7 +145,8 @@ NamedPoints readTable(const FileContents& file, const PointColumnChoice& choice,
     if (!table.begin([](const auto&) { return false; })) {
         file.fail("has no points; expected some");
     }
-    const bool isNamed = !table.isOfNumbers();
+    // A row with a number in it is one of numbers, if with a slip.
+    const bool isNamed = table.isOfWords();
     const std::size_t width = table.cells().size();
     PointTaker taker(file, width, isNamed ? table.names() : std::vector<std::string>(), choice);
     std::vector<double> row(taker.columns().size());
@@ -143,11 +157,11 @@ NamedPoints readTable(const FileContents& file, const PointColumnChoice& choice,
         for (std::size_t i = 0; i < row.size(); ++i) {
             row[i] = table.number(taker.columns()[i], taker.nameOf(i));
         }
-        taker.add(row, fail);
+        taker.add(row, table.lineNumber(), fail);
         constexpr std::size_t kRowsBetween = 65536;
         if (++rows % kRowsBetween == 0) progress.throwIfInterrupted();
     }
-    return taker.take();
+    return taker.take("line");
 }
 
 /// What the header of a .npy file says, as far as it is of use here.
@@ -230,11 +244,11 @@ NamedPoints readNpy(const FileContents& file, const PointColumnChoice& choice) {
                 row[k] = single;
             }
         }
-        taker.add(row, [&](const std::string& what) {
+        taker.add(row, i + 1, [&](const std::string& what) {
             file.fail("row " + std::to_string(i + 1) + " " + what);
         });
     }
-    return taker.take();
+    return taker.take("row");
 }
 
 }  // namespace

@@ -134,6 +134,11 @@ void TableRows::requireWidth(std::size_t width) const {
          ", as in the first line");
 }
 
+bool TableRows::isOfWords() const {
+    return std::none_of(mCells.begin(), mCells.end(),
+                        [](std::string_view cell) { return numberOf(cell).has_value(); });
+}
+
 bool TableRows::isOfNumbers() const {
     return std::all_of(mCells.begin(), mCells.end(),
                        [](std::string_view cell) { return numberOf(cell).has_value(); });

@@ -35,6 +35,10 @@ class TableRows {
     std::vector<std::string> names() const { return {mCells.begin(), mCells.end()}; }
     /// True if all cells of the row are numbers.
     bool isOfNumbers() const;
+    /// True if none of them is.
+    bool isOfWords() const;
+    /// Of the row's line in the file, from 1.
+    std::size_t lineNumber() const { return mNumber; }
     std::size_t position() const { return mFile.bytes.size() - mRest.size(); }
 
     /// Cell `column` as a number; complains otherwise. `name`: what the number is.

@@ -25,7 +25,9 @@ struct FitSurfaceOptions {
     /// data.
     std::optional<int> maxLevel;
     /// 1 / length, in units of the root of the rectangle's area, 0.01 or more: the surface is stiff
-    /// within that length, and like a membrane farther off. Default: the most likely one.
+    /// within that length, and like a membrane farther off. Default: the most likely one, or more
+    /// if the surface of 20000 points at most would go beyond their values by more than their
+    /// range.
     std::optional<double> tension;
 };
 
@@ -43,8 +45,11 @@ struct SurfaceFit {
     std::vector<BsplineSurface> levels;
     std::vector<FitLevel> report;  ///< one for each
     double tension = 0;            ///< used, as in the options
-    std::size_t points = 0;        ///< after places that are the same became one
-    std::size_t duplicates = 0;    ///< how many were averaged away
+    /// With a noise: the root mean square of the differences in parts of it; 1 if it was reached.
+    double noiseLeft = 1;
+    double swing = 0;            ///< how far it goes beyond the values, in parts of their range
+    std::size_t points = 0;      ///< after places that are the same became one
+    std::size_t duplicates = 0;  ///< how many were averaged away
 
     /// The sum of the levels with indices from `first` to `last`, both included. Throws
     /// Error(ErrorKind::Usage) if they are not there.

@@ -14,6 +14,8 @@ struct PointColumnChoice {
     /// Names, or numbers from 1: x, y, and a value or several. Empty: the columns named x and y, or
     /// the first two, and all others.
     std::vector<std::string> columns;
+    /// The places are in space: after x and y comes z.
+    bool isInSpace = false;
 };
 
 /// Points, and what the file calls their values.
@@ -26,13 +28,13 @@ struct NamedPoints {
 /// Reads a table of places and values.
 ///
 /// .csv .xyz .txt: a line for each point, its numbers separated by semicolons, tabs, commas or
-/// blanks. If the first line has a word that is no number, it names the columns. Lines that are
+/// blanks. If no word of the first line is a number, it names the columns. Lines that are
 /// empty or begin with "#" or "//" are passed over. .npy: [point][column], float or double,
 /// little-endian, in C order.
 ///
 /// Throws Error(ErrorKind::Input), naming the file, the line or row, what was found and what was
 /// expected, if the file is missing, of an unknown kind, cut short or without points, has rows of
-/// different lengths, fewer than three columns, a word where a number belongs or a number that is
+/// different lengths, too few columns, a word where a number belongs or a number that is
 /// not finite; Error(ErrorKind::Usage) for columns that are not there or chosen twice;
 /// Error(ErrorKind::Interrupted).
 NamedPoints readScatteredPoints(const std::filesystem::path& path,

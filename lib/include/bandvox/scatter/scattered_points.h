@@ -3,15 +3,23 @@
 #include <bandvox/scatter/bspline_surface.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 namespace bandvox {
 
-/// Values at places in a plane, in any order.
+/// Values at places in a plane or in space, in any order.
 struct ScatteredPoints {
     std::vector<double> x, y;    ///< world units, finite
+    std::vector<double> z;       ///< the same; empty in a plane
     int columns = 1;             ///< values at each place, 1 or more
     std::vector<double> values;  ///< [place][column], finite
+    /// Where each stands in the file that it comes from, for errors; may be empty.
+    std::vector<std::uint32_t> lines;
+    std::string lineWord = "line";  ///< what the file has: lines, or rows
+
+    bool isInSpace() const { return !z.empty(); }
 
     std::size_t size() const { return x.size(); }
     double value(std::size_t i, int column) const {
@@ -25,6 +33,9 @@ struct MergedPoints {
     std::vector<double> weight;  ///< of each: how many have become one
     std::size_t duplicates = 0;  ///< how many are gone
 };
+
+/// " (line 7)" of a point, or nothing if its line is not known.
+std::string lineOfPoint(const ScatteredPoints& points, std::size_t i);
 
 /// Averages the values at places that are the same. Throws Error(ErrorKind::Input) if such values
 /// are farther apart than `tolerance` times the range of their column; a negative tolerance allows
