@@ -116,7 +116,7 @@ TEST(DetailLevels, RefuseNumbersThatAreNone) {
     const auto grid = FloatGrid::create(0.0F);
     EXPECT_THROW(makeDetailLevels(grid, 0), Error);
     EXPECT_THROW(makeDetailLevels(grid, 17), Error);
-    EXPECT_THROW(makeDetailLevels(nullptr, 1), Error);
+    EXPECT_THROW(makeDetailLevels(openvdb::FloatGrid::ConstPtr(), 1), Error);
 }
 
 }  // namespace
