@@ -46,16 +46,27 @@ struct SmoothRun {
     std::vector<double> lengths;    // up to each point
 };
 
-// A cubic with given ends and end directions, whose handles have the lengths that fit best.
+// A cubic with given ends and end directions, whose handles have the lengths that fit best. With a
+// cubic that is near already, distances along it count little, since parameters will give way
+// there: that takes a few rounds where plain least squares take hundreds.
 Cubic leastSquares(const std::array<Place, 4>& frame, const std::vector<Place>& points,
-                   const std::vector<double>& parameters) {
+                   const std::vector<double>& parameters, const Cubic* near) {
+    constexpr double kWeightAlong = 0.02;
     const auto& [a, b, da, db] = frame;
     double aa = 0, ab = 0, bb = 0, ra = 0, rb = 0;
     for (std::size_t k = 0; k < points.size(); ++k) {
         const double t = parameters[k], s = 1 - t;
         const double b1 = 3 * s * s * t, b2 = 3 * s * t * t;
-        const Place rest = points[k] - ((s * s * s + b1) * a + (t * t * t + b2) * b);
-        const Place va = b1 * da, vb = -b2 * db;
+        Place rest = points[k] - ((s * s * s + b1) * a + (t * t * t + b2) * b);
+        Place va = b1 * da, vb = -b2 * db;
+        if (near != nullptr) {
+            const Place slope = near->slope(t);
+            const double length = std::max(lengthOf(slope), 1e-300);
+            const Place along = (1 / length) * slope;
+            for (Place* v : {&rest, &va, &vb}) {
+                *v = *v - (1 - kWeightAlong) * dot(*v, along) * along;
+            }
+        }
         aa += dot(va, va);
         ab += dot(va, vb);
         bb += dot(vb, vb);
@@ -95,11 +106,12 @@ FittedCubic fitOne(const SmoothRun& run, std::size_t first, std::size_t last, do
     }
     const std::array<Place, 4> frame{run.points[first], run.points[last], run.directions[first],
                                      run.directions[last]};
-    FittedCubic best{.cubic = leastSquares(frame, points, parameters),
+    FittedCubic best{.cubic = leastSquares(frame, points, parameters, nullptr),
                      .error = std::numeric_limits<double>::infinity()};
     double before = best.error;
+    Cubic cubic = best.cubic;
     for (int round = 0; round < kRounds; ++round) {
-        const Cubic cubic = round == 0 ? best.cubic : leastSquares(frame, points, parameters);
+        if (round > 0) cubic = leastSquares(frame, points, parameters, &cubic);
         double error = 0;
         for (std::size_t k = 0; k < count; ++k) {
             parameters[k] = projected(cubic, points[k], parameters[k]);

@@ -71,9 +71,10 @@ class CurveJoiner {
     void link() {
         // Ends by the cell that they are in; the smoothest pairs come first.
         std::unordered_map<std::uint64_t, std::vector<std::size_t>> cells;
-        const auto key = [&](double x, double y) {
-            const auto i = static_cast<std::int64_t>(std::floor(x / (4 * mReach)));
-            const auto j = static_cast<std::int64_t>(std::floor(y / (4 * mReach)));
+        const auto index = [&](double x) {
+            return static_cast<std::int64_t>(std::floor(x / (4 * mReach)));
+        };
+        const auto key = [&](std::int64_t i, std::int64_t j) {
             return static_cast<std::uint64_t>(i) * 0x9E3779B97F4A7C15U ^
                    static_cast<std::uint64_t>(j);
         };
@@ -81,11 +82,9 @@ class CurveJoiner {
         for (std::size_t e = 0; e < mPartner.size(); ++e) {
             if (mCurves[e / 2].closed) continue;
             const CurvePoint& p = endPoint(e);
-            std::vector<std::uint64_t> visited;
+            const std::int64_t i = index(p.x), j = index(p.y);
             for (int near = 0; near < 9; ++near) {
-                const std::uint64_t cell = key(p.x + (near % 3 - 1) * 4 * mReach,
-                                               p.y + (near / 3 - 1) * 4 * mReach);
-                const auto found = cells.find(cell);
+                const auto found = cells.find(key(i + near % 3 - 1, j + near / 3 - 1));
                 if (found == cells.end()) continue;
                 for (const std::size_t other : found->second) {
                     const CurvePoint& q = endPoint(other);
@@ -94,7 +93,7 @@ class CurveJoiner {
                     pairs.emplace_back(-smoothness(e, other), other, e);
                 }
             }
-            cells[key(p.x, p.y)].push_back(e);
+            cells[key(i, j)].push_back(e);
         }
         std::sort(pairs.begin(), pairs.end());
         for (const auto& [score, a, b] : pairs) {
@@ -161,7 +160,13 @@ void markCorners(Curve& curve, double reach) {
         }
         const auto come = directionTowards(points[first], points[b]);
         const auto go = directionTowards(points[last], points[a]);
-        if (-(come[0] * go[0] + come[1] * go[1]) < kCosineOfCorner) points[i].corner = true;
+        // A cusp is in its place already.
+        const auto begin = points.begin() + static_cast<std::ptrdiff_t>(first);
+        const auto end = points.begin() + static_cast<std::ptrdiff_t>(last) + 1;
+        const bool isKnown = std::any_of(begin, end, [](const CurvePoint& p) { return p.corner; });
+        if (!isKnown && -(come[0] * go[0] + come[1] * go[1]) < kCosineOfCorner) {
+            points[i].corner = true;
+        }
     }
 }
 
