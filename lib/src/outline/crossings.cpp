@@ -1,5 +1,7 @@
 #include "outline/crossings.h"
 
+#include "outline/refine_point.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -53,8 +55,10 @@ class SegmentGrid {
 
 class CrossingSearch {
   public:
-    CrossingSearch(std::span<const Curve> curves, const CurveSampling& sampling)
+    CrossingSearch(std::span<const Curve> curves, std::span<const ViewPatch> patches,
+                   const CurveSampling& sampling)
         : mCurves(curves),
+          mPatches(patches),
           mSize(sampling.size),
           mFlatness(sampling.flatness),
           mGrid(curves, sampling.size / 200),
@@ -69,6 +73,7 @@ class CrossingSearch {
             }
         }
         for (std::size_t c = 0; c < mCurves.size(); ++c) {
+            if (mCurves[c].kind == OutlineKind::Intersection) passFolds(c);
             if (mCurves[c].closed || mCurves[c].points.empty()) continue;
             touch(c, mCurves[c].points.front());
             touch(c, mCurves[c].points.back());
@@ -107,6 +112,33 @@ class CrossingSearch {
         if (occludes(first) && depthA < depthB + near) mPlaces[b.curve].push_back(b.index + alongB);
     }
 
+    // Where an intersection goes over a fold of one of its surfaces, by halving.
+    void passFolds(std::size_t curve) {
+        const auto& points = mCurves[curve].points;
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+            const CurvePoint &a = points[i], &b = points[i + 1];
+            if (a.patch != b.patch || a.other != b.other) continue;
+            for (const bool isOther : {false, true}) {
+                if ((foldAt(a, isOther) >= 0) == (foldAt(b, isOther) >= 0)) continue;
+                double low = 0, high = 1;
+                CurvePoint middle = a;
+                while (high - low > 1e-6) {
+                    const double share = 0.5 * (low + high);
+                    middle = pointBetween(mPatches, a, b, share);
+                    const bool isLow = (foldAt(middle, isOther) >= 0) == (foldAt(a, isOther) >= 0);
+                    (isLow ? low : high) = share;
+                }
+                mPlaces[curve].push_back(static_cast<double>(i) + low);
+                touch(curve, middle);
+            }
+        }
+    }
+
+    double foldAt(const CurvePoint& p, bool isOther) const {
+        const auto index = static_cast<std::size_t>(isOther ? p.other : p.patch);
+        return evaluate(mPatches[index].f, isOther ? p.s : p.u, isOther ? p.t : p.v).value;
+    }
+
     // Curves that pass through the end of another one, in space.
     void touch(std::size_t curve, const CurvePoint& p) {
         const double reach = 2 * mFlatness;
@@ -132,6 +164,7 @@ class CrossingSearch {
     }
 
     std::span<const Curve> mCurves;
+    std::span<const ViewPatch> mPatches;
     double mSize, mFlatness;
     SegmentGrid mGrid;
     std::vector<CurvePlaces> mPlaces;
@@ -139,8 +172,10 @@ class CrossingSearch {
 
 }  // namespace
 
-std::vector<CurvePlaces> crossings(std::span<const Curve> curves, const CurveSampling& sampling) {
-    return CrossingSearch(curves, sampling).search();
+std::vector<CurvePlaces> crossings(std::span<const Curve> curves,
+                                   std::span<const ViewPatch> patches,
+                                   const CurveSampling& sampling) {
+    return CrossingSearch(curves, patches, sampling).search();
 }
 
 }  // namespace bandvox

@@ -79,10 +79,10 @@ class StretchSampler {
     // Appends the points after a, up to b.
     void refine(const LedPoint& a, LedPoint b, int depth) {
         constexpr double kSmallTurn = 0.98;
-        constexpr int kDeepest = 40;
+        constexpr int kMostHalvings = 40;
         alignWith(a, b);
         const double width = b.lead - a.lead;
-        const bool isNarrow = depth > kDeepest || width < 1e-11;
+        const bool isNarrow = depth > kMostHalvings || width < 1e-11;
         LedPoint middle = at(0.5 * (a.lead + b.lead));
         alignWith(a, middle);
         const bool isSmooth = turn(a, b) > kSmallTurn && turn(a, middle) > kSmallTurn;

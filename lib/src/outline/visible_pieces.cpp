@@ -90,6 +90,13 @@ class CurveSight {
         // Long parts are looked at more often.
         const int more = std::min(40, static_cast<int>(span / (0.02 * mSampling.size)));
         for (int k = 1; k <= more; ++k) where.push_back(from + span * k / (more + 1));
+        // Changes that were not foreseen mostly are near the ends.
+        for (const double away : {1e-3, 4e-3, 1.2e-2}) {
+            const double inward = away * mSampling.size;
+            if (inward > 0.2 * span) break;
+            where.push_back(from + inward);
+            where.push_back(to - inward);
+        }
         std::sort(where.begin(), where.end());
         double begin = from;
         int hidden = hiddenAt(where[0]);
@@ -179,7 +186,7 @@ class CurveSight {
 std::vector<VisiblePiece> visiblePieces(std::span<const Curve> curves,
                                         std::span<const ViewPatch> patches, const Sheets& sheets,
                                         const CurveSampling& sampling, Progress& progress) {
-    const std::vector<CurvePlaces> places = crossings(curves, sampling);
+    const std::vector<CurvePlaces> places = crossings(curves, patches, sampling);
     std::vector<std::vector<VisiblePiece>> parts(curves.size());
     parallelFor(static_cast<std::int64_t>(curves.size()), [&](std::int64_t i) {
         progress.throwIfInterrupted();

@@ -1,0 +1,150 @@
+// What is hidden, against rays on fine triangles; every free end has to have a reason.
+
+#include "outline/visible_pieces.h"
+
+#include "outline/page_view.h"
+#include "outline/refine_point.h"
+#include "outline/sample_surfaces.h"
+#include "outline/surface_curves.h"
+#include "outline/triangle_sheets.h"
+
+#include <bandvox/source/read_patches.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <vector>
+
+namespace bandvox::outline_test {
+namespace {
+
+const std::filesystem::path kTeapot =
+    std::filesystem::path(BANDVOX_SOURCE_DIR) / "examples" / "data" / "teapot.bpt";
+
+struct Drawn {
+    std::vector<ViewPatch> seen;
+    std::vector<VisiblePiece> pieces;
+    double size = 0, pixel = 0;
+};
+
+Drawn draw(const std::vector<BezierPatch>& patches, const OutlineOptions& options) {
+    Drawn drawn;
+    drawn.size = std::max(options.width, options.height);
+    drawn.pixel = drawn.size / 1000;
+    const ViewMatrix view = pageView(patches, options);
+    for (const BezierPatch& patch : patches) {
+        drawn.seen.push_back(seenBy(view, patch, drawn.size));
+    }
+    const CurveSampling sampling{.flatness = 0.25 * options.tolerance, .size = drawn.size};
+    const auto curves =
+        surfaceCurves(patches, drawn.seen, options, sampling, silentProgress());
+    drawn.pieces =
+        visiblePieces(curves, drawn.seen, Sheets(drawn.seen), sampling, silentProgress());
+    return drawn;
+}
+
+OutlineOptions viewFrom(double azimuth, double elevation, bool isPerspective) {
+    OutlineOptions options;
+    using Projection = CameraOptions::Projection;
+    options.camera.projection = isPerspective ? Projection::Perspective : Projection::Orthographic;
+    options.camera.from = openvdb::Vec3d(std::cos(elevation) * std::cos(azimuth),
+                                         std::cos(elevation) * std::sin(azimuth),
+                                         std::sin(elevation));
+    options.camera.up = openvdb::Vec3d(0, 0, 1);
+    return options;
+}
+
+struct Checked {
+    int samples = 0, wrong = 0;
+};
+
+/// Compares ten or more samples of each piece with rays on triangles. Triangles are not where the
+/// surface is: what is in front has to be so by `margin`.
+Checked check(const Drawn& drawn, int steps, double margin) {
+    const TriangleSheets oracle(drawn.seen, steps, drawn.size);
+    Checked result;
+    for (const auto& [curve, hidden] : drawn.pieces) {
+        double length = 0;
+        std::vector<double> lengths{0};
+        for (std::size_t i = 1; i < curve.points.size(); ++i) {
+            length += std::hypot(curve.points[i].x - curve.points[i - 1].x,
+                                 curve.points[i].y - curve.points[i - 1].y);
+            lengths.push_back(length);
+        }
+        const double away = curve.closed ? 0 : 0.2 * drawn.pixel;
+        if (length <= 2 * away) continue;
+        const int count = std::max(10, static_cast<int>(length / (5 * drawn.pixel)));
+        for (int k = 0; k < count; ++k) {
+            const double at = away + (length - 2 * away) * (k + 0.5) / count;
+            const auto above = std::upper_bound(lengths.begin(), lengths.end(), at);
+            const auto i = std::min(static_cast<std::size_t>(above - lengths.begin()),
+                                    lengths.size() - 1);
+            const double step = lengths[i] - lengths[i - 1];
+            const CurvePoint p = pointBetween(drawn.seen, curve.points[i - 1], curve.points[i],
+                                              step > 0 ? (at - lengths[i - 1]) / step : 0);
+            const double nearest = oracle.nearest(p.x, p.y);
+            const bool isClear = !(nearest < p.z - 0.01 * margin), isHidden = nearest < p.z - margin;
+            ++result.samples;
+            // What is just in front may be the curve's own surface, or not.
+            if (hidden == 0 ? !isHidden : !isClear) continue;
+            ++result.wrong;
+        }
+    }
+    return result;
+}
+
+TEST(VisiblePieces, OfTheTeapotAgreeWithRaysOnTriangles) {
+    const auto patches = readPatches(kTeapot).patches;
+    constexpr int kAzimuths = 3;
+    Checked whole;
+    for (const double elevation : {-0.2, 0.35, 1.0}) {
+        for (int k = 0; k < kAzimuths; ++k) {
+            for (const bool isPerspective : {false, true}) {
+                const double azimuth = 2 * std::numbers::pi * (k + 0.2) / kAzimuths;
+                const Checked checked =
+                    check(draw(patches, viewFrom(azimuth, elevation, isPerspective)), 150, 0.4);
+                whole.samples += checked.samples;
+                whole.wrong += checked.wrong;
+            }
+        }
+    }
+    EXPECT_GT(whole.samples, 20000);
+    // Triangles are wrong about a few samples themselves, where the surface is seen at a slant.
+    EXPECT_LE(whole.wrong, whole.samples / 1000) << whole.samples;
+}
+
+TEST(VisiblePieces, OfATorusAgreeWithRaysOnTriangles) {
+    for (const double elevation : {0.05, 0.1, 0.4, 1.3}) {
+        const Drawn drawn = draw(torus(1, 0.4), viewFrom(0.7, elevation, false));
+        const Checked checked = check(drawn, 150, 0.4);
+        EXPECT_GT(checked.samples, 100);
+        EXPECT_LE(checked.wrong, checked.samples / 500) << elevation;
+    }
+}
+
+TEST(VisiblePieces, OfTwoTeapotsThatPassThroughEachOtherAgreeWithRaysOnTriangles) {
+    auto patches = readPatches(kTeapot).patches;
+    const auto other =
+        mapped(patches, {{{0.6, -0.8, 0, 0.7}, {0.8, 0.6, 0, 0.4}, {0, 0, 1, 0.5}}});
+    patches.insert(patches.end(), other.begin(), other.end());
+    for (const double azimuth : {0.4, 2.9}) {
+        const Checked checked = check(draw(patches, viewFrom(azimuth, 0.4, true)), 150, 0.4);
+        EXPECT_GT(checked.samples, 1000);
+        EXPECT_LE(checked.wrong, checked.samples / 500) << azimuth;
+    }
+}
+
+TEST(VisiblePieces, AreWholeLoopsWhereAllIsSeen) {
+    const Drawn drawn = draw(torus(1, 0.4), viewFrom(0.7, 1.2, false));
+    ASSERT_EQ(drawn.pieces.size(), 2U);
+    for (const VisiblePiece& piece : drawn.pieces) {
+        EXPECT_TRUE(piece.curve.closed);
+        EXPECT_EQ(piece.hidden, 0);
+    }
+}
+
+}  // namespace
+}  // namespace bandvox::outline_test
