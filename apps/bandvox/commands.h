@@ -43,11 +43,10 @@ void runView(const CommandLine& line);
 
 /// All commands, in the order in which the help lists them.
 inline const std::vector<Command>& commands() {
-    static const std::vector<Command> all{{convertTable, runConvert}, {voxelizeTable, runVoxelize},
-                                          {fitTable, runFit},         {renderTable, runRender},
-                                          {outlineTable, runOutline}, {infoTable, runInfo},
-                                          {compareTable, runCompare}, {mergeTable, runMerge},
-                                          {viewTable, runView}};
+    static const std::vector<Command> all{
+        {convertTable, runConvert}, {voxelizeTable, runVoxelize}, {fitTable, runFit},
+        {renderTable, runRender},   {outlineTable, runOutline},   {infoTable, runInfo},
+        {compareTable, runCompare}, {mergeTable, runMerge},       {viewTable, runView}};
     return all;
 }
 

@@ -110,7 +110,8 @@ void readPage(const CommandLine& line, OutlineOptions& options) {
             isSize = height.ec == std::errc() && height.ptr == end;
         }
         if (!isSize || !kSomeLength.contains(size[0]) || !kSomeLength.contains(size[1])) {
-            line.fail("page", "WxH in mm, A3, A4, A5 or letter, the last four also with -landscape");
+            line.fail("page",
+                      "WxH in mm, A3, A4, A5 or letter, the last four also with -landscape");
         }
     }
     options.width = size[0];
@@ -137,14 +138,12 @@ OutlineRequest parseOutline(const CommandLine& line) {
     OutlineOptions& options = request.options;
     readPage(line, options);
     const double shorter = std::min(options.width, options.height);
-    options.margin =
-        line.number("margin", {.low = 0, .high = 0.5 * shorter, .highOpen = true},
-                    std::min(options.margin, 0.05 * shorter));
+    options.margin = line.number("margin", {.low = 0, .high = 0.5 * shorter, .highOpen = true},
+                                 std::min(options.margin, 0.05 * shorter));
     options.tolerance = line.number("tolerance", kSomeLength, options.tolerance);
-    options.creaseAngle =
-        line.number("crease-angle", {.low = 0, .high = 180}, options.creaseAngle);
-    options.camera = readCamera(line, (options.height - 2 * options.margin) /
-                                          (options.width - 2 * options.margin));
+    options.creaseAngle = line.number("crease-angle", {.low = 0, .high = 180}, options.creaseAngle);
+    options.camera = readCamera(
+        line, (options.height - 2 * options.margin) / (options.width - 2 * options.margin));
     request.kinds = line.choices("kinds", kOutlineKinds);
     options.hidden = !line.has("no-hidden");
     request.stroke.width = line.number("stroke", kSomeLength, request.stroke.width);
@@ -212,8 +211,7 @@ void runOutline(const CommandLine& line) {
                     "the drawing is empty: it has no lines of these --kinds; expected some");
     }
     sayOutline(run, outline);
-    run.writeOutput(output,
-                    [&](AtomicFile& file) { writeSvg(file, outline, request.stroke); });
+    run.writeOutput(output, [&](AtomicFile& file) { writeSvg(file, outline, request.stroke); });
 }
 
 }  // namespace bandvox::app

@@ -30,8 +30,8 @@ TEST(Help, ListsTheCommands) {
     const RunResult bare = runBandvox({});
     EXPECT_EQ(bare.status, 0);
     EXPECT_EQ(bare.err, "");
-    for (const char* word : {"convert", "voxelize", "fit", "render", "outline", "info", "compare", "merge",
-                             "view", "Exit status", "130"}) {
+    for (const char* word : {"convert", "voxelize", "fit", "render", "outline", "info", "compare",
+                             "merge", "view", "Exit status", "130"}) {
         EXPECT_NE(bare.out.find(word), std::string::npos) << word;
     }
     for (const Arguments& arguments : {Arguments{"--help"}, {"-h"}, {"help"}}) {

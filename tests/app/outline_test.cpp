@@ -34,10 +34,10 @@ std::size_t occurrences(const std::string& text, const std::string& word) {
 
 TEST(Outline, DrawsTheTeapotWithFewAnchors) {
     const TemporaryFolder folder;
-    const RunResult result = runBandvox(
-        {"outline", kTeapotFile, "-o", "teapot.svg", "--up", "0,0,1", "--from", "1,-2,1",
-         "--tolerance", "0.01", "--stats", "stats.json"},
-        {.folder = folder.path()});
+    const RunResult result =
+        runBandvox({"outline", kTeapotFile, "-o", "teapot.svg", "--up", "0,0,1", "--from", "1,-2,1",
+                    "--tolerance", "0.01", "--stats", "stats.json"},
+                   {.folder = folder.path()});
     ASSERT_EQ(result.status, 0) << result.err;
     const auto stats = nlohmann::json::parse(readText(folder / "stats.json"));
     EXPECT_LE(stats["counts"]["visible_anchors"], 200);
@@ -75,9 +75,13 @@ TEST(Outline, HasPagesAndKinds) {
     EXPECT_NE(svg.find("stroke: rgb(1, 2, 3); stroke-width: 0.5"), std::string::npos);
     EXPECT_EQ(svg.find("class=\"hidden"), std::string::npos);
     EXPECT_EQ(svg.find("visible boundary"), std::string::npos);
-    for (const Names& wrong : {Names{"--page", "A9"}, {"--page", "10x"}, {"--page", "-3x4"},
-                               {"--tolerance", "0"}, {"--kinds", "edge"},
-                               {"--stroke-color", "red;} svg {"}, {"--margin", "75"},
+    for (const Names& wrong : {Names{"--page", "A9"},
+                               {"--page", "10x"},
+                               {"--page", "-3x4"},
+                               {"--tolerance", "0"},
+                               {"--kinds", "edge"},
+                               {"--stroke-color", "red;} svg {"},
+                               {"--margin", "75"},
                                {"--eye", "0.1,0,1"}}) {
         EXPECT_EQ(outline(wrong).status, 2) << wrong[1];
     }
@@ -86,8 +90,8 @@ TEST(Outline, HasPagesAndKinds) {
 TEST(Outline, ReadsFreeFormSurfacesOfObjFiles) {
     const TemporaryFolder folder;
     writeText(folder / "cylinder.obj", kCylinder);
-    const RunResult result = runBandvox({"outline", "cylinder.obj", "-o", "out.svg"},
-                                        {.folder = folder.path()});
+    const RunResult result =
+        runBandvox({"outline", "cylinder.obj", "-o", "out.svg"}, {.folder = folder.path()});
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_NE(readText(folder / "out.svg").find("boundary"), std::string::npos);
     // A uniform cubic B-spline with 4 x 4 points, turned into one patch.

@@ -51,9 +51,9 @@ int cornersOf(const std::vector<Curve>& curves) {
         for (std::size_t i = 0; i < count; ++i) {
             if (!curve.points[i].corner) continue;
             const CurvePoint& before = curve.points[i > 0 ? i - 1 : count - 2];
-            const bool isRepeated = std::hypot(before.x - curve.points[i].x,
-                                               before.y - curve.points[i].y) < 1e-6 &&
-                                    before.corner;
+            const bool isRepeated =
+                std::hypot(before.x - curve.points[i].x, before.y - curve.points[i].y) < 1e-6 &&
+                before.corner;
             const bool isClosing = i + 1 == count && curve.closed && curve.points[0].corner;
             if (!isRepeated && !isClosing) ++corners;
         }
@@ -103,14 +103,15 @@ TEST(FoldCurves, FindSmallLoops) {
     for (int step = 0; step < 40; ++step) {
         const double middle = 0.5 * (without + with);
         (foldCurves(seenBy(viewFrom(0.3, middle), patch, kSize), 0, sampling).empty() ? without
-                                                                                      : with) = middle;
+                                                                                      : with) =
+            middle;
     }
     const auto curves = foldCurves(seenBy(viewFrom(0.3, with - 1e-7), patch, kSize), 0, sampling);
     ASSERT_EQ(curves.size(), 1U);
     EXPECT_TRUE(curves[0].closed);
-    const auto [low, high] = std::minmax_element(
-        curves[0].points.begin(), curves[0].points.end(),
-        [](const CurvePoint& a, const CurvePoint& b) { return a.u < b.u; });
+    const auto [low, high] =
+        std::minmax_element(curves[0].points.begin(), curves[0].points.end(),
+                            [](const CurvePoint& a, const CurvePoint& b) { return a.u < b.u; });
     EXPECT_LT(high->u - low->u, 1e-3);
     EXPECT_EQ(std::count_if(curves[0].points.begin(), curves[0].points.end(),
                             [](const CurvePoint& p) { return p.corner; }),

@@ -1,6 +1,8 @@
 // Drawings of surfaces against closed forms, and their visibility against rays on triangles.
 
+#include "outline/page_view.h"
 #include "outline/sample_surfaces.h"
+#include "outline/surface_curves.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/parallel.h>
@@ -48,12 +50,19 @@ void alongPath(const OutlinePath& path, int samples, Visit&& visit) {
     }
 }
 
+double distance(const Place& p, const CurvePoint& a, const CurvePoint& b) {
+    const double dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy;
+    const double share =
+        square > 0 ? std::clamp(((p[0] - a.x) * dx + (p[1] - a.y) * dy) / square, 0.0, 1.0) : 0;
+    return std::hypot(a.x + share * dx - p[0], a.y + share * dy - p[1]);
+}
+
 TEST(PatchesToOutline, DrawsASphereAsACircleOfFewCubics) {
     // 200 units of the page are 2.5 of the world.
     const PatchModel model{sphere(1), {"sphere"}, {}};
     constexpr double kRadius = 80;
-    for (const openvdb::Vec3d from : {openvdb::Vec3d(0.3, 0.7, 0.4), openvdb::Vec3d(1, 0, 0),
-                                      openvdb::Vec3d(1, 1, 1)}) {
+    for (const openvdb::Vec3d from :
+         {openvdb::Vec3d(0.3, 0.7, 0.4), openvdb::Vec3d(1, 0, 0), openvdb::Vec3d(1, 1, 1)}) {
         OutlineOptions options = parallelView(from, 2.5);
         options.tolerance = 0.9e-5 * kRadius;
         const Outline outline = patchesToOutline(model, options);
@@ -124,6 +133,40 @@ TEST(PatchesToOutline, DoesNotDependOnTheNumberOfThreads) {
     }
 }
 
+TEST(PatchesToOutline, KeepsToTheTrueCurvesOfTheTeapot) {
+    const PatchModel model =
+        readPatches(std::filesystem::path(BANDVOX_SOURCE_DIR) / "examples" / "data" / "teapot.bpt");
+    OutlineOptions options;
+    options.camera.up = openvdb::Vec3d(0, 0, 1);
+    for (const openvdb::Vec3d from : {openvdb::Vec3d(1, -2, 1), openvdb::Vec3d(-0.3, 1, 0.2)}) {
+        options.camera.from = from;
+        const Outline outline = patchesToOutline(model, options);
+        const ViewMatrix view = pageView(model.patches, options);
+        std::vector<ViewPatch> seen;
+        for (const BezierPatch& patch : model.patches) seen.push_back(seenBy(view, patch, 200));
+        const auto exact = surfaceCurves(model.patches, seen, options,
+                                         {.flatness = 1e-4, .size = 200}, silentProgress());
+        double worst = 0;
+        std::size_t anchors = 0;
+        for (const OutlinePath& path : outline.paths) {
+            if (path.hidden == 0) anchors += path.anchors();
+            alongPath(path, 8, [&](const Place& p) {
+                double nearest = HUGE_VAL;
+                for (const Curve& curve : exact) {
+                    if (curve.kind != path.kind) continue;
+                    for (std::size_t i = 1; i < curve.points.size(); ++i) {
+                        nearest =
+                            std::min(nearest, distance(p, curve.points[i - 1], curve.points[i]));
+                    }
+                }
+                worst = std::max(worst, nearest);
+            });
+        }
+        EXPECT_LT(worst, 1.2 * options.tolerance);
+        EXPECT_LE(anchors, 200U);
+    }
+}
+
 TEST(PatchesToOutline, FindsWhereSpheresMeet) {
     PatchModel model{sphere(1), {"a", "b"}, {}};
     const auto other = mapped(sphere(1), {{{1, 0, 0, 0.9}, {0, 1, 0, 0.13}, {0, 0, 1, 0.21}}});
@@ -153,7 +196,8 @@ TEST(PatchesToOutline, FindsWhereSpheresMeet) {
     constexpr int kSteps = 20000;
     for (int k = 0; k < kSteps; ++k) {
         const double angle = 2 * std::numbers::pi * (k + 0.5) / kSteps;
-        expected += std::hypot(a * std::sin(angle), b * std::cos(angle)) * 2 * std::numbers::pi / kSteps;
+        expected +=
+            std::hypot(a * std::sin(angle), b * std::cos(angle)) * 2 * std::numbers::pi / kSteps;
     }
     EXPECT_NEAR(length, expected, 0.02);
 }

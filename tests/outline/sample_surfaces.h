@@ -18,10 +18,14 @@ inline std::array<std::array<double, 3>, 3> quarterCircle() {
 /// Turns quarter q of a circle, counted counter-clockwise.
 inline std::array<double, 3> turned(const std::array<double, 3>& p, int q) {
     switch (q % 4) {
-        case 0: return p;
-        case 1: return {-p[1], p[0], p[2]};
-        case 2: return {-p[0], -p[1], p[2]};
-        default: return {p[1], -p[0], p[2]};
+        case 0:
+            return p;
+        case 1:
+            return {-p[1], p[0], p[2]};
+        case 2:
+            return {-p[0], -p[1], p[2]};
+        default:
+            return {p[1], -p[0], p[2]};
     }
 }
 
@@ -30,7 +34,8 @@ inline std::array<double, 3> turned(const std::array<double, 3>& p, int q) {
 inline std::vector<BezierPatch> torus(double ring, double tube, bool isSphere = false) {
     std::vector<BezierPatch> patches;
     const auto arc = quarterCircle();
-    const std::vector<int> profile = isSphere ? std::vector<int>{3, 0} : std::vector<int>{0, 1, 2, 3};
+    const std::vector<int> profile =
+        isSphere ? std::vector<int>{3, 0} : std::vector<int>{0, 1, 2, 3};
     for (int around = 0; around < 4; ++around) {
         for (const int quarter : profile) {
             BezierPatch patch{.degreeU = 2, .degreeV = 2};
@@ -49,7 +54,9 @@ inline std::vector<BezierPatch> torus(double ring, double tube, bool isSphere = 
     return patches;
 }
 
-inline std::vector<BezierPatch> sphere(double radius) { return torus(0, radius, true); }
+inline std::vector<BezierPatch> sphere(double radius) {
+    return torus(0, radius, true);
+}
 
 /// Turns and moves the homogeneous points of patches: rows of a 3 x 4 matrix.
 inline std::vector<BezierPatch> mapped(std::vector<BezierPatch> patches,

@@ -43,7 +43,8 @@ class TriangleSheets {
                 return (q[0] - p[0]) * (v - p[1]) - (q[1] - p[1]) * (u - p[0]);
             };
             const double wa = area(b, c, x, y), wb = area(c, a, x, y), wc = area(a, b, x, y);
-            const bool isInside = (wa >= 0 && wb >= 0 && wc >= 0) || (wa <= 0 && wb <= 0 && wc <= 0);
+            const bool isInside =
+                (wa >= 0 && wb >= 0 && wc >= 0) || (wa <= 0 && wb <= 0 && wc <= 0);
             const double sum = wa + wb + wc;
             if (!isInside || sum == 0) continue;
             depth = std::min(depth, (wa * a[2] + wb * b[2] + wc * c[2]) / sum);

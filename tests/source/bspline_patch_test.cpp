@@ -32,7 +32,8 @@ BsplineNet sampleNet() {
     net.knots = {{{-1, 0, 0.5, 1, 1.5, 3, 3, 4, 5, 6}, {0, 0, 0, 1, 2.5, 3, 3, 3}}};
     for (int k = 0; k < 30; ++k) {
         const double w = 1 + 0.5 * std::sin(3.1 * k);
-        net.control.push_back({w * (k / 5 + 0.1 * std::sin(k)), w * (k % 5), w * std::cos(2.0 * k), w});
+        net.control.push_back(
+            {w * (k / 5 + 0.1 * std::sin(k)), w * (k % 5), w * std::cos(2.0 * k), w});
     }
     return net;
 }
@@ -101,7 +102,8 @@ TEST(BezierPatch, HasTheDerivativesThatDifferencesShow) {
         EXPECT_NEAR(jet.duu[c], (at(1, 0)[c] - twice + at(-1, 0)[c]) / square, 1e-4);
         EXPECT_NEAR(jet.dvv[c], (at(0, 1)[c] - twice + at(0, -1)[c]) / square, 1e-4);
         EXPECT_NEAR(jet.duv[c],
-                    (at(1, 1)[c] - at(1, -1)[c] - at(-1, 1)[c] + at(-1, -1)[c]) / (4 * square), 1e-4);
+                    (at(1, 1)[c] - at(1, -1)[c] - at(-1, 1)[c] + at(-1, -1)[c]) / (4 * square),
+                    1e-4);
     }
 }
 

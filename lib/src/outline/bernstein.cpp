@@ -56,9 +56,15 @@ double monotoneRoot(const std::vector<double>& c, double a, double b) {
 
 }  // namespace
 
-double Bernstein2::smallest() const { return *std::min_element(c.begin(), c.end()); }
-double Bernstein2::largest() const { return *std::max_element(c.begin(), c.end()); }
-double Bernstein2::largestMagnitude() const { return std::max(largest(), -smallest()); }
+double Bernstein2::smallest() const {
+    return *std::min_element(c.begin(), c.end());
+}
+double Bernstein2::largest() const {
+    return *std::max_element(c.begin(), c.end());
+}
+double Bernstein2::largestMagnitude() const {
+    return std::max(largest(), -smallest());
+}
 
 Bernstein2 operator+(const Bernstein2& a, const Bernstein2& b) {
     Bernstein2 sum = a;
@@ -148,8 +154,7 @@ Bernstein2 withoutFactor(const Bernstein2& p, int side) {
             const int k = alongU ? i : j;
             const double share = atEnd ? double(degree) / (degree - k) : double(degree) / (k + 1);
             const int shift = atEnd ? 0 : 1;
-            result.at(i, j) =
-                share * (alongU ? p.at(i + shift, j) : p.at(i, j + shift));
+            result.at(i, j) = share * (alongU ? p.at(i + shift, j) : p.at(i, j + shift));
         }
     }
     return result;

@@ -16,7 +16,7 @@ struct Side {
 struct SharedSide {
     Side a;
     std::optional<Side> b;
-    bool reversed = false;  // b's parameter is 1 - t where a's is t
+    bool reversed = false;   // b's parameter is 1 - t where a's is t
     bool isCrowded = false;  // more than two patches meet there
 };
 
@@ -136,7 +136,14 @@ class SideSampler {
         } else {
             tx = 1;
         }
-        return {.x = p.x, .y = p.y, .z = p.z, .tx = tx, .ty = ty, .patch = side.patch, .u = u, .v = v,
+        return {.x = p.x,
+                .y = p.y,
+                .z = p.z,
+                .tx = tx,
+                .ty = ty,
+                .patch = side.patch,
+                .u = u,
+                .v = v,
                 .rule = CurveRule::Border};
     }
 
@@ -149,8 +156,8 @@ class SideSampler {
         const double length = std::hypot(dx, dy);
         const double off = std::abs(dx * (middle.y - a.y) - dy * (middle.x - a.x)) /
                            std::max(length, 1e-12 * mSampling.size);
-        const bool isSmooth = std::abs(a.tx * b.tx + a.ty * b.ty) > 0.98 ||
-                              length < 0.1 * mSampling.flatness;
+        const bool isSmooth =
+            std::abs(a.tx * b.tx + a.ty * b.ty) > 0.98 || length < 0.1 * mSampling.flatness;
         const bool isFlat = off < mSampling.flatness && length < 0.02 * mSampling.size && isSmooth;
         if (depth > 24 || (isFlat && depth > 2)) {
             points.push_back(b);
@@ -254,8 +261,7 @@ class BorderWork {
             const double a = foldSign(seenAt(side.a), side.a.side, t);
             const double b = foldSign(seenAt(*side.b), side.b->side, onB(side, t));
             if (canFold && a * b * orientation(side) < 0) {
-                curves.contours.push_back(
-                    mSampler.sample(side.a, t0, t1, OutlineKind::Contour));
+                curves.contours.push_back(mSampler.sample(side.a, t0, t1, OutlineKind::Contour));
             } else if (isCrease) {
                 curves.creases.push_back(mSampler.sample(side.a, t0, t1, OutlineKind::Crease));
             }

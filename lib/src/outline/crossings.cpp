@@ -31,7 +31,9 @@ class SegmentGrid {
     const CurvePoint& end(const Segment& s) const { return mCurves[s.curve].points[s.index + 1]; }
     const std::unordered_map<std::uint64_t, std::vector<Segment>>& cells() const { return mCells; }
 
-    std::int64_t indexOf(double x) const { return static_cast<std::int64_t>(std::floor(x / mCell)); }
+    std::int64_t indexOf(double x) const {
+        return static_cast<std::int64_t>(std::floor(x / mCell));
+    }
     static std::uint64_t key(std::int64_t i, std::int64_t j) {
         return static_cast<std::uint64_t>(i) << 32U ^ (static_cast<std::uint64_t>(j) & 0xFFFFFFFFU);
     }
@@ -108,7 +110,8 @@ class CrossingSearch {
         const double depthA = p.z + alongA * (q.z - p.z), depthB = r.z + alongB * (s.z - r.z);
         // Depths between points of a curve are not exact.
         const double near = 1e-3 * mSize;
-        if (occludes(second) && depthB < depthA + near) mPlaces[a.curve].push_back(a.index + alongA);
+        if (occludes(second) && depthB < depthA + near)
+            mPlaces[a.curve].push_back(a.index + alongA);
         if (occludes(first) && depthA < depthB + near) mPlaces[b.curve].push_back(b.index + alongB);
     }
 

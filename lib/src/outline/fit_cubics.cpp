@@ -12,11 +12,21 @@ namespace {
 
 using Place = std::array<double, 2>;
 
-Place operator+(const Place& a, const Place& b) { return {a[0] + b[0], a[1] + b[1]}; }
-Place operator-(const Place& a, const Place& b) { return {a[0] - b[0], a[1] - b[1]}; }
-Place operator*(double s, const Place& a) { return {s * a[0], s * a[1]}; }
-double dot(const Place& a, const Place& b) { return a[0] * b[0] + a[1] * b[1]; }
-double lengthOf(const Place& a) { return std::hypot(a[0], a[1]); }
+Place operator+(const Place& a, const Place& b) {
+    return {a[0] + b[0], a[1] + b[1]};
+}
+Place operator-(const Place& a, const Place& b) {
+    return {a[0] - b[0], a[1] - b[1]};
+}
+Place operator*(double s, const Place& a) {
+    return {s * a[0], s * a[1]};
+}
+double dot(const Place& a, const Place& b) {
+    return a[0] * b[0] + a[1] * b[1];
+}
+double lengthOf(const Place& a) {
+    return std::hypot(a[0], a[1]);
+}
 
 struct Cubic {
     std::array<Place, 4> p;
@@ -76,8 +86,8 @@ Cubic leastSquares(const std::array<Place, 4>& frame, const std::vector<Place>& 
     const double determinant = aa * bb - ab * ab;
     const double chord = lengthOf(b - a);
     double alpha = (ra * bb - rb * ab) / determinant, beta = (rb * aa - ra * ab) / determinant;
-    const bool isGood = alpha > 1e-3 * chord && beta > 1e-3 * chord && alpha < 4 * chord &&
-                        beta < 4 * chord;
+    const bool isGood =
+        alpha > 1e-3 * chord && beta > 1e-3 * chord && alpha < 4 * chord && beta < 4 * chord;
     if (!isGood) alpha = beta = chord / 3;
     return {{a, a + alpha * da, b - beta * db, b}};
 }
@@ -205,13 +215,13 @@ SmoothRun runOf(const std::vector<CurvePoint>& points, std::size_t first, std::s
     std::vector<const CurvePoint*> apart;
     double extent = 0;
     for (std::size_t i = first; i <= last; ++i) {
-        extent = std::max(extent, std::hypot(points[i].x - points[first].x,
-                                             points[i].y - points[first].y));
+        extent = std::max(extent,
+                          std::hypot(points[i].x - points[first].x, points[i].y - points[first].y));
     }
     for (std::size_t i = first; i <= last; ++i) {
         const CurvePoint& p = points[i];
-        if (!apart.empty() && std::hypot(p.x - apart.back()->x, p.y - apart.back()->y) <=
-                                  1e-7 * extent) {
+        if (!apart.empty() &&
+            std::hypot(p.x - apart.back()->x, p.y - apart.back()->y) <= 1e-7 * extent) {
             if (i == last && apart.size() > 1) apart.back() = &p;
             continue;
         }
@@ -230,10 +240,11 @@ SmoothRun runOf(const std::vector<CurvePoint>& points, std::size_t first, std::s
 std::vector<CurvePoint> fromCorner(const Curve& curve) {
     std::vector<CurvePoint> points = curve.points;
     if (!curve.closed) return points;
-    const auto corner = std::find_if(points.begin(), points.end(),
-                                     [](const CurvePoint& p) { return p.corner; });
+    const auto corner =
+        std::find_if(points.begin(), points.end(), [](const CurvePoint& p) { return p.corner; });
     if (corner == points.end() || corner == points.begin()) return points;
-    const bool isRepeated = points.front().x == points.back().x && points.front().y == points.back().y;
+    const bool isRepeated =
+        points.front().x == points.back().x && points.front().y == points.back().y;
     const auto shift = corner - points.begin();
     if (isRepeated) points.pop_back();
     std::rotate(points.begin(), points.begin() + shift, points.end());
@@ -252,8 +263,8 @@ std::vector<std::array<double, 2>> fitCubics(const Curve& curve, double toleranc
         SmoothRun run = runOf(points, first, i);
         first = i;
         if (run.points.size() < 2) continue;
-        const bool isLoop = curve.closed && path.empty() && i + 1 == points.size() &&
-                            !points.front().corner;
+        const bool isLoop =
+            curve.closed && path.empty() && i + 1 == points.size() && !points.front().corner;
         // The end of a smooth loop is its start.
         if (isLoop) run.directions.back() = run.directions.front();
         for (const Cubic& cubic : fitRun(run, tolerance)) {

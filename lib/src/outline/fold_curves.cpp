@@ -39,8 +39,10 @@ class StretchSampler {
         double du = mStretch.leadIsU ? 1 : -f.dv / f.du;
         double dv = mStretch.leadIsU ? -f.du / f.dv : 1;
         const double speed = (p.xu * du + p.xv * dv) * tx + (p.yu * du + p.yv * dv) * ty;
-        return {lead, speed,
-                {.x = p.x, .y = p.y, .z = p.z, .tx = tx, .ty = ty, .patch = mIndex, .u = u, .v = v}};
+        return {
+            lead,
+            speed,
+            {.x = p.x, .y = p.y, .z = p.z, .tx = tx, .ty = ty, .patch = mIndex, .u = u, .v = v}};
     }
 
     static double turn(const LedPoint& a, const LedPoint& b) {
@@ -93,8 +95,8 @@ class StretchSampler {
             if (a.speed * middle.speed < 0 && middle.speed * b.speed < 0) {
                 return divide(a, middle, b, depth);
             }
-            const LedPoint cusp = a.speed * middle.speed < 0 ? cuspBetween(a, middle)
-                                                             : cuspBetween(middle, b);
+            const LedPoint cusp =
+                a.speed * middle.speed < 0 ? cuspBetween(a, middle) : cuspBetween(middle, b);
             const bool isInside = cusp.lead > a.lead && cusp.lead < b.lead;
             if (isInside) {
                 refine(a, cusp, depth + 1);
@@ -134,8 +136,8 @@ class StretchJoiner {
             int best = -1;
             for (std::size_t b = a + 1; b < mPartner.size(); ++b) {
                 if (mPartner[b] >= 0) continue;
-                const double distance = std::max(std::abs(end(a).u - end(b).u),
-                                                 std::abs(end(a).v - end(b).v));
+                const double distance =
+                    std::max(std::abs(end(a).u - end(b).u), std::abs(end(a).v - end(b).v));
                 if (distance < nearest) {
                     nearest = distance;
                     best = static_cast<int>(b);

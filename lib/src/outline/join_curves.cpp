@@ -29,7 +29,9 @@ struct End {
 class CurveJoiner {
   public:
     CurveJoiner(std::vector<Curve> curves, const CurveSampling& sampling)
-        : mCurves(std::move(curves)), mReach(1e-6 * sampling.size), mPartner(2 * mCurves.size(), -1) {}
+        : mCurves(std::move(curves)),
+          mReach(1e-6 * sampling.size),
+          mPartner(2 * mCurves.size(), -1) {}
 
     std::vector<Curve> join() {
         link();
@@ -155,7 +157,8 @@ void markCorners(Curve& curve, double reach) {
         while (first > 0 && first - 1 != b && isSamePlace(points[first - 1], points[i], reach)) {
             --first;
         }
-        while (last + 1 < count && last + 1 != a && isSamePlace(points[last + 1], points[i], reach)) {
+        while (last + 1 < count && last + 1 != a &&
+               isSamePlace(points[last + 1], points[i], reach)) {
             ++last;
         }
         const auto come = directionTowards(points[first], points[b]);

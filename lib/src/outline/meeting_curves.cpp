@@ -19,8 +19,8 @@ constexpr double kMostTriangles = 4e5;
 int stepsFor(const ViewPatch& patch, double tolerance) {
     double bend = 0;
     for (const Bernstein2* axis : {&patch.x, &patch.y, &patch.z}) {
-        for (const Bernstein2& second : {derivativeU(derivativeU(*axis)),
-                                         derivativeV(derivativeV(*axis))}) {
+        for (const Bernstein2& second :
+             {derivativeU(derivativeU(*axis)), derivativeV(derivativeV(*axis))}) {
             bend = std::max(bend, second.largestMagnitude() / patch.w.smallest());
         }
     }
@@ -83,13 +83,13 @@ class MeetingTracer {
     }
 
     // Appends what is needed between a and b.
-    void refine(CurvePoint a, const CurvePoint& b, int depth, std::vector<CurvePoint>& points) const {
+    void refine(CurvePoint a, const CurvePoint& b, int depth,
+                std::vector<CurvePoint>& points) const {
         const double dx = b.x - a.x, dy = b.y - a.y;
         const double length = std::hypot(dx, dy);
         if (depth > 12 || length < mSampling.flatness) return;
         const CurvePoint middle = pointBetween(mSeen, a, b, 0.5);
-        const double off =
-            std::abs(dx * (middle.y - a.y) - dy * (middle.x - a.x)) / length;
+        const double off = std::abs(dx * (middle.y - a.y) - dy * (middle.x - a.x)) / length;
         if (off < mSampling.flatness && length < 0.02 * mSampling.size) return;
         refine(a, middle, depth + 1, points);
         points.push_back(middle);

@@ -13,11 +13,15 @@ namespace {
 
 using Vec = std::array<double, 3>;
 
-Vec minus(const Vec& a, const Vec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Vec minus(const Vec& a, const Vec& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
 Vec cross(const Vec& a, const Vec& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-double dot(const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double dot(const Vec& a, const Vec& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 // Six times the volume that a triangle spans with a point: on which side of it the point is.
 double side(const Vec& a, const Vec& b, const Vec& c, const Vec& p) {
@@ -83,8 +87,8 @@ class NetSearch {
         }
         const double whole = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
         mSame = 1e-9 * whole;
-        mCellSize = std::max({1.5 * extent / static_cast<double>(mTriangles.size()),
-                              whole / 500, 1e-300});
+        mCellSize =
+            std::max({1.5 * extent / static_cast<double>(mTriangles.size()), whole / 500, 1e-300});
         for (std::size_t k = 0; k < mTriangles.size(); ++k) addToCells(k);
     }
 
@@ -98,13 +102,15 @@ class NetSearch {
                 t.high[c] = std::max(t.high[c], p[c]);
             }
         }
-        const Vec normal = cross(minus(corner(t, 1), corner(t, 0)), minus(corner(t, 2), corner(t, 0)));
+        const Vec normal =
+            cross(minus(corner(t, 1), corner(t, 0)), minus(corner(t, 2), corner(t, 0)));
         // Where a side of a patch is a point, triangles have no area.
         if (dot(normal, normal) > 0) mTriangles.push_back(t);
     }
 
     const Vec& corner(const NetTriangle& t, std::size_t k) const {
-        return mNets[static_cast<std::size_t>(t.net)].points[static_cast<std::size_t>(t.corners[k])];
+        return mNets[static_cast<std::size_t>(t.net)]
+            .points[static_cast<std::size_t>(t.corners[k])];
     }
 
     std::array<std::int64_t, 3> cellOf(const Vec& p) const {
@@ -134,7 +140,8 @@ class NetSearch {
         for (std::size_t i = 0; i < 3; ++i) {
             for (std::size_t j = 0; j < 3; ++j) {
                 const Vec d = minus(corner(a, i), corner(b, j));
-                if (std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])}) <= mSame) return true;
+                if (std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])}) <= mSame)
+                    return true;
             }
         }
         return false;
@@ -233,8 +240,8 @@ class NetSearch {
             const FoundPlace& next = segments[k][1 - e];
             places.push_back(next.place);
             const auto& others = at[next.key];
-            const auto other = std::find_if(others.begin(), others.end(),
-                                            [&](std::size_t o) { return !used[o]; });
+            const auto other =
+                std::find_if(others.begin(), others.end(), [&](std::size_t o) { return !used[o]; });
             if (other == others.end()) return;
             k = *other;
             e = segments[k][0].key == next.key ? 0 : 1;

@@ -41,7 +41,8 @@ void requireValid(const OutlineOptions& options) {
 void requireFinite(const PatchModel& model) {
     for (const BezierPatch& patch : model.patches) {
         for (const auto& p : patch.control) {
-            const bool isGood = std::isfinite(p[0] + p[1] + p[2]) && p[3] > 0 && std::isfinite(p[3]);
+            const bool isGood =
+                std::isfinite(p[0] + p[1] + p[2]) && p[3] > 0 && std::isfinite(p[3]);
             if (isGood) continue;
             std::ostringstream message;
             message << "a patch has the control point (" << p[0] << ", " << p[1] << ", " << p[2]
@@ -84,8 +85,7 @@ class OutlineWork {
             throw Error(ErrorKind::Result,
                         "the drawing is empty: nothing of the surfaces has a line to draw");
         }
-        return {mOptions.width, mOptions.height, mModel.objects, std::move(paths),
-                mModel.warnings};
+        return {mOptions.width, mOptions.height, mModel.objects, std::move(paths), mModel.warnings};
     }
 
   private:

@@ -10,8 +10,8 @@ namespace bandvox {
 
 /// Answers which patches a line of sight meets. Patches are cut into parts on each of which the map
 /// (u, v) -> (X, Y) is one-to-one by bounds of its derivatives, so that Newton's method finds the
-/// one place, or that there is none; where a patch folds, parts are cut on while a line is followed.
-/// Many threads may ask at once.
+/// one place, or that there is none; where a patch folds, parts are cut on while a line is
+/// followed. Many threads may ask at once.
 class Sheets {
   public:
     /// The patches are kept by reference.

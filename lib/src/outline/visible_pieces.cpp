@@ -22,7 +22,8 @@ class CurveRuler {
     explicit CurveRuler(const Curve& curve) : mLengths{0} {
         const auto& p = curve.points;
         for (std::size_t i = 1; i < p.size(); ++i) {
-            mLengths.push_back(mLengths.back() + std::hypot(p[i].x - p[i - 1].x, p[i].y - p[i - 1].y));
+            mLengths.push_back(mLengths.back() +
+                               std::hypot(p[i].x - p[i - 1].x, p[i].y - p[i - 1].y));
         }
     }
     double whole() const { return mLengths.back(); }

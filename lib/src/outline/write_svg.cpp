@@ -17,9 +17,9 @@ constexpr std::array<const char*, 4> kKindNames{"contour", "boundary", "crease",
 // A coordinate to a tenth of a micrometre, without needless zeros.
 std::string svgNumber(double value) {
     std::array<char, 64> digits{};
-    const auto end =
-        std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed, 4)
-            .ptr;
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
+                                   std::chars_format::fixed, 4)
+                         .ptr;
     std::string text(digits.data(), end);
     while (text.ends_with('0')) text.pop_back();
     if (text.ends_with('.')) text.pop_back();
@@ -86,7 +86,8 @@ void writeSvg(AtomicFile& file, const Outline& outline, const StrokeOptions& opt
     using Layer = std::array<int, 3>;  // object, visible, kind
     std::map<Layer, std::vector<const OutlinePath*>> layers;
     for (const OutlinePath& path : outline.paths) {
-        layers[{path.object, path.hidden == 0 ? 1 : 0, static_cast<int>(path.kind)}].push_back(&path);
+        layers[{path.object, path.hidden == 0 ? 1 : 0, static_cast<int>(path.kind)}].push_back(
+            &path);
     }
     std::string text = header(outline, options);
     int object = -1;

@@ -16,7 +16,9 @@ CurveJet curveJet(std::vector<Homogeneous> points, double t) {
     const int degree = static_cast<int>(points.size()) - 1;
     CurveJet jet;
     for (int rest = degree; rest >= 0; --rest) {
-        const auto at = [&](int i, std::size_t c) { return points[static_cast<std::size_t>(i)][c]; };
+        const auto at = [&](int i, std::size_t c) {
+            return points[static_cast<std::size_t>(i)][c];
+        };
         for (std::size_t c = 0; c < 4; ++c) {
             if (rest == 2) {
                 jet.second[c] = degree * (degree - 1) * (at(2, c) - 2 * at(1, c) + at(0, c));
@@ -78,9 +80,8 @@ PatchJet evaluate(const BezierPatch& patch, double u, double v) {
         jet.du[c] = (s.first[c] - s.first[3] * p) / w;
         jet.dv[c] = (sv.value[c] - sv.value[3] * p) / w;
         jet.duu[c] = (s.second[c] - 2 * s.first[3] * jet.du[c] - s.second[3] * p) / w;
-        jet.duv[c] = (sv.first[c] - s.first[3] * jet.dv[c] - sv.value[3] * jet.du[c] -
-                      sv.first[3] * p) /
-                     w;
+        jet.duv[c] =
+            (sv.first[c] - s.first[3] * jet.dv[c] - sv.value[3] * jet.du[c] - sv.first[3] * p) / w;
         jet.dvv[c] = (svv.value[c] - 2 * sv.value[3] * jet.dv[c] - svv.value[3] * p) / w;
     }
     return jet;

@@ -76,8 +76,8 @@ void requireValid(const BsplineNet& net) {
             refuse("knots that descend; expected none");
         }
     }
-    const auto expected = static_cast<std::size_t>(net.count[0]) *
-                          static_cast<std::size_t>(net.count[1]);
+    const auto expected =
+        static_cast<std::size_t>(net.count[0]) * static_cast<std::size_t>(net.count[1]);
     if (net.control.size() != expected) {
         refuse(std::to_string(net.control.size()) + " control points; expected " +
                std::to_string(expected));
@@ -91,8 +91,8 @@ BezierPatch patchOf(const BsplineNet& net, const Span& across, const Span& along
     patch.control.resize(static_cast<std::size_t>((u.degree + 1) * (v.degree + 1)));
     std::vector<std::vector<Homogeneous>> columns(static_cast<std::size_t>(v.degree) + 1);
     for (int i = across.index - u.degree; i <= across.index; ++i) {
-        const auto row = net.control.begin() +
-                         static_cast<std::ptrdiff_t>(i) * net.count[1] + along.index - v.degree;
+        const auto row = net.control.begin() + static_cast<std::ptrdiff_t>(i) * net.count[1] +
+                         along.index - v.degree;
         for (int j = 0; j <= v.degree; ++j) {
             columns[static_cast<std::size_t>(j)].push_back(
                 v.blossom({row, row + v.degree + 1}, along.index, along.range, v.degree - j));

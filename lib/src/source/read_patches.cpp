@@ -29,8 +29,7 @@ class NumberWalk {
         if (++mWord < mLines.words().size()) return;
         mWord = 0;
         if (!mLines.nextWithWords()) {
-            mFile.fail("ends after line " + std::to_string(mLines.number()) + "; expected " +
-                       what);
+            mFile.fail("ends after line " + std::to_string(mLines.number()) + "; expected " + what);
         }
     }
     std::int64_t integer(const std::string& what) {
@@ -88,8 +87,7 @@ PatchModel readBptPatches(const FileContents& file, Progress& progress) {
     model.objects.push_back(file.path.stem().string());
     for (std::int64_t k = 0; k < count; ++k) {
         if (k % 1024 == 0) progress.throwIfInterrupted();
-        const std::string what =
-            "patch " + std::to_string(k + 1) + " of " + std::to_string(count);
+        const std::string what = "patch " + std::to_string(k + 1) + " of " + std::to_string(count);
         BezierPatch patch;
         patch.degreeU = degreeFrom(numbers, what);
         patch.degreeV = degreeFrom(numbers, what);

@@ -92,7 +92,8 @@ class ObjSurfaces {
         need(6, "surf s0 s1 t0 t1 and points");
         if (mInBody) mLines.fail("begins a surface within another one; expected \"end\"");
         if (mTypeWord != "bezier" && mTypeWord != "bspline") {
-            mLines.fail("has a surface of cstype \"" + mTypeWord + "\"; expected bezier or bspline");
+            mLines.fail("has a surface of cstype \"" + mTypeWord +
+                        "\"; expected bezier or bspline");
         }
         if (!mHasDegree) mLines.fail("has a surface before any deg; expected its degrees");
         mInBody = true;
@@ -108,8 +109,9 @@ class ObjSurfaces {
     void takeControl(std::size_t word) {
         const auto index = leadingInteger(mLines.words()[word]);
         const auto count = static_cast<std::int64_t>(mPoints.size());
-        const std::int64_t at = !index ? -1 : index->value < 0 ? count + index->value
-                                                               : index->value - 1;
+        const std::int64_t at = !index             ? -1
+                                : index->value < 0 ? count + index->value
+                                                   : index->value - 1;
         if (at < 0 || at >= count) {
             mLines.fail("refers to point \"" + std::string(mLines.words()[word].substr(0, 40)) +
                         "\" after " + std::to_string(count) + "; expected one of them");
@@ -158,16 +160,15 @@ class ObjSurfaces {
         mInBody = false;
         for (std::size_t axis = 0; axis < 2; ++axis) {
             if (mIsBezier) repeatKnots(axis);
-            mNet.count[axis] =
-                static_cast<int>(mNet.knots[axis].size()) - mNet.degree[axis] - 1;
+            mNet.count[axis] = static_cast<int>(mNet.knots[axis].size()) - mNet.degree[axis] - 1;
             if (mNet.count[axis] <= mNet.degree[axis]) {
                 failSurface(std::to_string(mNet.knots[axis].size()) + " numbers in parm " +
                             (axis == 0 ? "u" : "v") + ", too few for the degree " +
                             std::to_string(mNet.degree[axis]));
             }
         }
-        const auto expected = static_cast<std::size_t>(mNet.count[0]) *
-                              static_cast<std::size_t>(mNet.count[1]);
+        const auto expected =
+            static_cast<std::size_t>(mNet.count[0]) * static_cast<std::size_t>(mNet.count[1]);
         if (mNet.control.size() != expected) {
             failSurface(std::to_string(mNet.control.size()) + " points; expected " +
                         std::to_string(mNet.count[0]) + " x " + std::to_string(mNet.count[1]) +
@@ -199,10 +200,10 @@ class ObjSurfaces {
     void takeName() {
         if (mLines.words().size() < 2) return;
         const std::string name(mLines.words()[1]);
-        const bool isUnused = !mModel.objects.empty() &&
-                              (mModel.patches.empty() ||
-                               mModel.patches.back().object + 1 !=
-                                   static_cast<int>(mModel.objects.size()));
+        const bool isUnused =
+            !mModel.objects.empty() &&
+            (mModel.patches.empty() ||
+             mModel.patches.back().object + 1 != static_cast<int>(mModel.objects.size()));
         if (isUnused) {
             mModel.objects.back() = name;
         } else {

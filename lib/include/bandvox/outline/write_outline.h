@@ -9,11 +9,11 @@ namespace bandvox {
 
 /// How lines look in a file.
 struct StrokeOptions {
-    double width = 0.35;                ///< of visible lines, page units; > 0
-    double hiddenWidth = 0.18;          ///< of hidden ones
-    std::string color = "#000000";      ///< as CSS has it
+    double width = 0.35;            ///< of visible lines, page units; > 0
+    double hiddenWidth = 0.18;      ///< of hidden ones
+    std::string color = "#000000";  ///< as CSS has it
     std::string hiddenColor = "#808080";
-    std::string dash = "1.2 0.8";       ///< of hidden lines, lengths of line and gap, page units
+    std::string dash = "1.2 0.8";  ///< of hidden lines, lengths of line and gap, page units
 };
 
 /// Writes a drawing as SVG: width and height in millimetres, with a matching viewBox. Each object
