@@ -31,7 +31,7 @@ const CommandTable& outlineTable() {
         const std::string page = "Page", lines = "Lines";
         CommandTable made{
             "outline",
-            "Draw free-form surfaces as lines (.svg).",
+            "Draw free-form surfaces as lines (.svg, .pdf, .eps).",
             "Draws the contours, boundaries, creases and intersections of Bézier and B-spline "
             "surfaces as Bézier curves. They are computed on the surfaces, never on polygons, and "
             "what is hidden is found by lines of sight to the surfaces. Visible and hidden lines "
@@ -41,7 +41,7 @@ const CommandTable& outlineTable() {
               "files are one scene.",
               true}},
             {
-                {"output", 'o', "FILE", "", "The .svg file to write. Needed.", page},
+                {"output", 'o', "FILE", "", "The .svg, .pdf or .eps file to write. Needed.", page},
                 {"page", 0, "SIZE",
                  formatNumber(options.width) + "x" + formatNumber(options.height),
                  "WxH in millimetres, or A3, A4, A5, letter, upright, or with -landscape.", page},
@@ -56,7 +56,8 @@ const CommandTable& outlineTable() {
                  lines},
                 {"no-hidden", 0, "", "", "Leave hidden lines away.", lines},
                 {"stroke", 0, "MM", formatNumber(stroke.width), "Width of visible lines.", lines},
-                {"stroke-color", 0, "COLOR", stroke.color, "Their colour, as in CSS.", lines},
+                {"stroke-color", 0, "COLOR", stroke.color,
+                 "Their colour, as in CSS; #rrggbb in .pdf and .eps.", lines},
                 {"hidden-stroke", 0, "MM", formatNumber(stroke.hiddenWidth),
                  "Width of hidden lines.", lines},
                 {"hidden-color", 0, "COLOR", stroke.hiddenColor, "Their colour.", lines},
@@ -134,7 +135,7 @@ OutlineRequest parseOutline(const CommandLine& line) {
     OutlineRequest request;
     request.inputs = line.positionals();
     request.output = line.requiredText("output");
-    requireExtension(request.output, {".svg"});
+    requireExtension(request.output, {".svg", ".pdf", ".eps"});
     OutlineOptions& options = request.options;
     readPage(line, options);
     const double shorter = std::min(options.width, options.height);
@@ -211,7 +212,13 @@ void runOutline(const CommandLine& line) {
                     "the drawing is empty: it has no lines of these --kinds; expected some");
     }
     sayOutline(run, outline);
-    run.writeOutput(output, [&](AtomicFile& file) { writeSvg(file, outline, request.stroke); });
+    run.writeOutput(output, [&](AtomicFile& file) {
+        const std::string extension = extensionOf(request.output);
+        const auto write = extension == ".pdf"   ? writePdf
+                           : extension == ".eps" ? writeEps
+                                                 : writeSvg;
+        write(file, outline, request.stroke);
+    });
 }
 
 }  // namespace bandvox::app

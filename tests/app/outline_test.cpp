@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -87,6 +88,37 @@ TEST(Outline, HasPagesAndKinds) {
     }
 }
 
+TEST(Outline, WritesPdfAndEps) {
+    const TemporaryFolder folder;
+    const auto outline = [&](const std::string& output, Names more) {
+        more.insert(more.begin(), {"outline", kTeapotFile, "-o", output, "--up", "0,0,1"});
+        return runBandvox(more, {.folder = folder.path()}).status;
+    };
+    ASSERT_EQ(outline("out.svg", {}), 0);
+    const std::string svg = readText(folder / "out.svg");
+    ASSERT_EQ(outline("out.pdf", {"--stroke-color", "#f00"}), 0);
+    const std::string pdf = readText(folder / "out.pdf");
+    EXPECT_EQ(occurrences(pdf, " c\n"), occurrences(svg, " C"));
+    EXPECT_EQ(occurrences(pdf, "/Type /OCG"), occurrences(svg, "class=\""));
+    EXPECT_NE(pdf.find("/MediaBox [0 0 566.9291 425.1969]"), std::string::npos);
+    EXPECT_NE(pdf.find("1 0 0 RG"), std::string::npos);
+    // Every object is where the table says, and the table where the end says.
+    const std::size_t table = std::stoul(pdf.substr(pdf.rfind("startxref\n") + 10));
+    ASSERT_EQ(pdf.compare(table, 5, "xref\n"), 0);
+    const std::size_t entries = pdf.find("65535 f \n", table) + 9;
+    for (std::size_t k = 0; k < occurrences(pdf, " 0 obj\n"); ++k) {
+        const std::size_t start = std::stoul(pdf.substr(entries + 20 * k, 10));
+        const std::string head = std::to_string(k + 1) + " 0 obj";
+        EXPECT_EQ(pdf.compare(start, head.size(), head), 0) << k;
+    }
+    ASSERT_EQ(outline("out.eps", {}), 0);
+    const std::string eps = readText(folder / "out.eps");
+    EXPECT_EQ(occurrences(eps, " curveto\n"), occurrences(svg, " C"));
+    EXPECT_NE(eps.find("%%BoundingBox: 0 0 567 426"), std::string::npos);
+    EXPECT_EQ(outline("bad.pdf", {"--stroke-color", "red"}), 2);
+    EXPECT_EQ(outline("bad.eps", {"--dash", "none"}), 2);
+}
+
 TEST(Outline, ReadsFreeFormSurfacesOfObjFiles) {
     const TemporaryFolder folder;
     writeText(folder / "cylinder.obj", kCylinder);
@@ -95,15 +127,12 @@ TEST(Outline, ReadsFreeFormSurfacesOfObjFiles) {
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_NE(readText(folder / "out.svg").find("boundary"), std::string::npos);
     // A uniform cubic B-spline with 4 x 4 points, turned into one patch.
-    std::string net;
-    for (int k = 0; k < 16; ++k) {
-        net += "v " + std::to_string(k % 4) + " ";
-        net += std::to_string(k / 4) + " " + std::to_string(k % 3) + "\n";
-    }
-    net += "o first\ncstype bspline\ndeg 3 3\nsurf 3 4 3 4";
-    for (int k = 1; k <= 16; ++k) net += " " + std::to_string(k - 17);
-    net += "\nparm u 0 1 2 3 4 5 6 7\nparm v 0 1 2 3 \\\n4 5 6 7\nend\n";
-    writeText(folder / "net.obj", net);
+    std::ostringstream net;
+    for (int k = 0; k < 16; ++k) net << "v " << k % 4 << " " << k / 4 << " " << k % 3 << "\n";
+    net << "o first\ncstype bspline\ndeg 3 3\nsurf 3 4 3 4";
+    for (int k = 0; k < 16; ++k) net << " " << k - 16;
+    net << "\nparm u 0 1 2 3 4 5 6 7\nparm v 0 1 2 3 \\\n4 5 6 7\nend\n";
+    writeText(folder / "net.obj", net.str());
     const RunResult both = runBandvox({"outline", "net.obj", "cylinder.obj", "-o", "out.svg"},
                                       {.folder = folder.path()});
     ASSERT_EQ(both.status, 0) << both.err;
@@ -125,8 +154,10 @@ TEST(Outline, RefusesBrokenFiles) {
     for (int k = 0; k < 1000; ++k) points += "1 1\n1 2 3\n1 2 3\n1 2 3\n1 2 3\n";
     const std::vector<Broken> all{
         {"a.bpt", "", "the number of patches"},
-        {"a.bpt", "2\n" + kFlatPatch.substr(2), "patch 2 of 2"},
-        {"a.bpt", kFlatPatch.substr(0, 20), "expected points of patch 1 of 1"},
+        {"a.bpt", "2\n" + kFlatPatch.substr(2), "announces 2 patches"},
+        {"a.bpt", "2\n" + kFlatPatch.substr(2) + "# " + std::string(40, 'x') + "\n",
+         "patch 2 of 2"},
+        {"a.bpt", "1\n1 1\n0.0000000 0 0\n1.0000000 0 0\n0 0", "expected points of patch 1 of 1"},
         {"a.bpt", kFlatPatch + "7\n", "line 7 goes on"},
         {"a.bpt", replaced(kFlatPatch, "1 1", "0 1"), "line 2 has the degree 0"},
         {"a.bpt", replaced(kFlatPatch, "1 1", "1 99"), "line 2 has the degree 99"},

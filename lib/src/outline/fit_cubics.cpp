@@ -220,9 +220,12 @@ SmoothRun runOf(const std::vector<CurvePoint>& points, std::size_t first, std::s
     }
     for (std::size_t i = first; i <= last; ++i) {
         const CurvePoint& p = points[i];
-        if (!apart.empty() &&
-            std::hypot(p.x - apart.back()->x, p.y - apart.back()->y) <= 1e-7 * extent) {
-            if (i == last && apart.size() > 1) apart.back() = &p;
+        const bool isSame = !apart.empty() && std::hypot(p.x - apart.back()->x,
+                                                         p.y - apart.back()->y) <= 1e-7 * extent;
+        if (isSame) {
+            // At a corner the last of several points in one place knows how the run begins, and the
+            // first one how it ends.
+            if (apart.size() == 1) apart.back() = &p;
             continue;
         }
         apart.push_back(&p);

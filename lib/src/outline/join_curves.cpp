@@ -128,45 +128,34 @@ bool isSamePlace(const CurvePoint& a, const CurvePoint& b, double reach) {
     return std::hypot(a.x - b.x, a.y - b.y) <= reach;
 }
 
+// The next point in a direction, 1 or -1, that is in another place; i itself if there is none.
+std::size_t nextPlace(const Curve& curve, std::size_t i, int step, double reach) {
+    const auto& points = curve.points;
+    const std::size_t count = points.size();
+    for (std::size_t k = 1; k < count; ++k) {
+        const std::size_t next = (i + (step > 0 ? k : count - k)) % count;
+        const bool isAround = step > 0 ? next < i : next > i;
+        if (isAround && !curve.closed) return i;
+        if (!isSamePlace(points[next], points[i], reach)) return next;
+    }
+    return i;
+}
+
 // Where the curve turns by more than a little from one point to the next.
 void markCorners(Curve& curve, double reach) {
     auto& points = curve.points;
     const std::size_t count = points.size();
-    const auto before = [&](std::size_t i) {
-        std::size_t k = i;
-        while (k > 0 && isSamePlace(points[k], points[i], reach)) --k;
-        if (!isSamePlace(points[k], points[i], reach) || !curve.closed) return k;
-        k = count - 1;
-        while (k > i && isSamePlace(points[k], points[i], reach)) --k;
-        return k;
-    };
-    const auto after = [&](std::size_t i) {
-        std::size_t k = i;
-        while (k + 1 < count && isSamePlace(points[k], points[i], reach)) ++k;
-        if (!isSamePlace(points[k], points[i], reach) || !curve.closed) return k;
-        k = 0;
-        while (k < i && isSamePlace(points[k], points[i], reach)) ++k;
-        return k;
-    };
     for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t b = before(i), a = after(i);
+        const std::size_t b = nextPlace(curve, i, -1, reach), a = nextPlace(curve, i, 1, reach);
         if (a == i || b == i) continue;
-        const std::size_t in = b < i ? i : 0;
-        // Points in the same place may be on two patches, each with its own direction.
-        std::size_t first = in, last = i;
-        while (first > 0 && first - 1 != b && isSamePlace(points[first - 1], points[i], reach)) {
-            --first;
-        }
-        while (last + 1 < count && last + 1 != a &&
-               isSamePlace(points[last + 1], points[i], reach)) {
-            ++last;
-        }
+        // Points in the same place, first to last, may be on two patches, with directions of their
+        // own.
+        const std::size_t first = (b + 1) % count, last = (a + count - 1) % count;
         const auto come = directionTowards(points[first], points[b]);
         const auto go = directionTowards(points[last], points[a]);
         // A cusp is in its place already.
-        const auto begin = points.begin() + static_cast<std::ptrdiff_t>(first);
-        const auto end = points.begin() + static_cast<std::ptrdiff_t>(last) + 1;
-        const bool isKnown = std::any_of(begin, end, [](const CurvePoint& p) { return p.corner; });
+        bool isKnown = points[last].corner;
+        for (std::size_t k = first; k != last; k = (k + 1) % count) isKnown |= points[k].corner;
         if (!isKnown && -(come[0] * go[0] + come[1] * go[1]) < kCosineOfCorner) {
             points[i].corner = true;
         }

@@ -52,6 +52,10 @@ void requireFinite(const PatchModel& model) {
     }
 }
 
+std::array<double, 3> place(const std::array<double, 4>& p) {
+    return {p[0] / p[3], p[1] / p[3], p[2] / p[3]};
+}
+
 /// Goes from patches to lines.
 class OutlineWork {
   public:
@@ -104,6 +108,16 @@ Outline patchesToOutline(const PatchModel& model, const OutlineOptions& options,
     requireFinite(model);
     if (model.patches.empty()) {
         throw Error(ErrorKind::Result, "the drawing is empty: there are no surfaces");
+    }
+    const auto isFirst = [&, first = place(model.patches[0].control[0])](const auto& p) {
+        return place(p) == first;
+    };
+    const bool isOnePoint =
+        std::all_of(model.patches.begin(), model.patches.end(), [&](const BezierPatch& patch) {
+            return std::all_of(patch.control.begin(), patch.control.end(), isFirst);
+        });
+    if (isOnePoint) {
+        throw Error(ErrorKind::Result, "the drawing is empty: all surfaces are one point");
     }
     return OutlineWork(model, options, progress).work();
 }

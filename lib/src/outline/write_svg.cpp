@@ -1,30 +1,9 @@
-#include <bandvox/core/error.h>
-#include <bandvox/outline/write_outline.h>
+#include "outline/paint_layers.h"
 
-#include <array>
-#include <charconv>
 #include <cstddef>
-#include <fstream>
-#include <map>
-#include <string>
-#include <vector>
 
 namespace bandvox {
 namespace {
-
-constexpr std::array<const char*, 4> kKindNames{"contour", "boundary", "crease", "intersection"};
-
-// A coordinate to a tenth of a micrometre, without needless zeros.
-std::string svgNumber(double value) {
-    std::array<char, 64> digits{};
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
-                                   std::chars_format::fixed, 4)
-                         .ptr;
-    std::string text(digits.data(), end);
-    while (text.ends_with('0')) text.pop_back();
-    if (text.ends_with('.')) text.pop_back();
-    return text == "-0" ? "0" : text;
-}
 
 std::string escaped(const std::string& text) {
     std::string result;
@@ -43,12 +22,12 @@ std::string escaped(const std::string& text) {
     return result;
 }
 
-void appendPath(std::string& text, const OutlinePath& path, const std::string& id) {
+void appendSvgPath(std::string& text, const OutlinePath& path, const std::string& id) {
     text += "      <path id=\"" + id;
     text += "\" d=\"";
     const auto put = [&](const std::array<double, 2>& p) {
-        text += svgNumber(p[0]) + ",";
-        text += svgNumber(p[1]);
+        text += plainNumber(p[0]) + ",";
+        text += plainNumber(p[1]);
     };
     text += 'M';
     put(path.points[0]);
@@ -62,70 +41,63 @@ void appendPath(std::string& text, const OutlinePath& path, const std::string& i
     text += path.closed ? " Z\"/>\n" : "\"/>\n";
 }
 
-std::string header(const Outline& outline, const StrokeOptions& options) {
-    const std::string width = svgNumber(outline.width), height = svgNumber(outline.height);
+std::string svgHeader(const Outline& outline, const StrokeOptions& options) {
+    const std::string width = plainNumber(outline.width), height = plainNumber(outline.height);
     std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
     text += "<svg xmlns=\"http://www.w3.org/2000/svg\" ";
     text += "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\"" + width;
     text += "mm\" height=\"" + height;
-    text += "mm\" viewBox=\"0 0 " + width + " ";
-    text += height + "\">\n  <style>\n";
+    text += "mm\" viewBox=\"0 0 " + width;
+    text += " " + height;
+    text += "\">\n  <style>\n";
     text += "    path { fill: none; stroke-linecap: round; stroke-linejoin: round; }\n";
     text += "    .visible path { stroke: " + escaped(options.color);
-    text += "; stroke-width: " + svgNumber(options.width) + "; }\n";
-    text += "    .hidden path { stroke: " + escaped(options.hiddenColor);
-    text += "; stroke-width: " + svgNumber(options.hiddenWidth);
-    text += "; stroke-dasharray: " + escaped(options.dash) + "; }\n  </style>\n";
+    text += "; stroke-width: " + plainNumber(options.width);
+    text += "; }\n    .hidden path { stroke: " + escaped(options.hiddenColor);
+    text += "; stroke-width: " + plainNumber(options.hiddenWidth);
+    text += "; stroke-dasharray: " + escaped(options.dash);
+    text += "; }\n  </style>\n";
     return text;
+}
+
+void appendSvgLayer(std::string& text, const PaintLayer& layer) {
+    const std::string sight = layer.sightName(), kind = layer.kindName();
+    std::string id = sight;
+    id += "-" + kind;
+    id += "-" + std::to_string(layer.object + 1);
+    text += "    <g id=\"" + id;
+    text += "\" class=\"" + sight;
+    text += " " + kind;
+    text += "\" inkscape:groupmode=\"layer\" inkscape:label=\"" + sight;
+    text += " " + kind;
+    text += "\">\n";
+    for (std::size_t k = 0; k < layer.paths.size(); ++k) {
+        std::string pathId = id;
+        pathId += "-" + std::to_string(k + 1);
+        appendSvgPath(text, *layer.paths[k], pathId);
+    }
+    text += "    </g>\n";
 }
 
 }  // namespace
 
 void writeSvg(AtomicFile& file, const Outline& outline, const StrokeOptions& options) {
-    // Hidden lines first, so that visible ones lie above them.
-    using Layer = std::array<int, 3>;  // object, visible, kind
-    std::map<Layer, std::vector<const OutlinePath*>> layers;
-    for (const OutlinePath& path : outline.paths) {
-        layers[{path.object, path.hidden == 0 ? 1 : 0, static_cast<int>(path.kind)}].push_back(
-            &path);
-    }
-    std::string text = header(outline, options);
+    std::string text = svgHeader(outline, options);
     int object = -1;
-    for (const auto& [layer, paths] : layers) {
-        const std::string number = std::to_string(layer[0] + 1);
-        if (layer[0] != object) {
+    for (const PaintLayer& layer : paintLayers(outline)) {
+        if (layer.object != object) {
             if (object >= 0) text += "  </g>\n";
-            object = layer[0];
-            const auto index = static_cast<std::size_t>(object);
-            const std::string name =
-                index < outline.objects.size() ? outline.objects[index] : "object " + number;
-            text += "  <g id=\"object-" + number;
-            text += "\" inkscape:groupmode=\"layer\" inkscape:label=\"" + escaped(name) + "\">\n";
+            object = layer.object;
+            text += "  <g id=\"object-" + std::to_string(object + 1);
+            text += "\" inkscape:groupmode=\"layer\" inkscape:label=\"";
+            text += escaped(layer.objectName(outline));
+            text += "\">\n";
         }
-        const std::string sight = layer[1] == 1 ? "visible" : "hidden";
-        const std::string kind = kKindNames[static_cast<std::size_t>(layer[2])];
-        std::string id = sight + "-";
-        id += kind + "-";
-        id += number;
-        text += "    <g id=\"" + id;
-        text += "\" class=\"" + sight + " ";
-        text += kind + "\" inkscape:groupmode=\"layer\" inkscape:label=\"";
-        text += sight + " ";
-        text += kind + "\">\n";
-        for (std::size_t k = 0; k < paths.size(); ++k) {
-            std::string pathId = id + "-";
-            pathId += std::to_string(k + 1);
-            appendPath(text, *paths[k], pathId);
-        }
-        text += "    </g>\n";
+        appendSvgLayer(text, layer);
     }
     if (object >= 0) text += "  </g>\n";
     text += "</svg>\n";
-    std::ofstream stream = file.open();
-    stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-    stream.flush();
-    if (stream) return;
-    throw Error(ErrorKind::Runtime, "\"" + file.target().string() + "\" could not be written");
+    writeWhole(file, text);
 }
 
 }  // namespace bandvox

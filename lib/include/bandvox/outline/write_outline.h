@@ -24,4 +24,14 @@ struct StrokeOptions {
 /// Throws Error(ErrorKind::Runtime) if it cannot be written.
 void writeSvg(AtomicFile& file, const Outline& outline, const StrokeOptions& options = {});
 
+/// Writes a drawing as PDF 1.7, a page unit a millimetre, with a layer (optional content) for each
+/// object and kind of line, visible and hidden ones apart. Colours are "#rgb" or "#rrggbb".
+///
+/// Throws Error(ErrorKind::Usage) for other colours, and for dashes that are no lengths,
+/// Error(ErrorKind::Runtime) if it cannot be written.
+void writePdf(AtomicFile& file, const Outline& outline, const StrokeOptions& options = {});
+
+/// The same as Encapsulated PostScript, which has no layers.
+void writeEps(AtomicFile& file, const Outline& outline, const StrokeOptions& options = {});
+
 }  // namespace bandvox
