@@ -19,8 +19,12 @@ struct Bernstein2 {
           n(degreeV),
           c(static_cast<std::size_t>(degreeU + 1) * static_cast<std::size_t>(degreeV + 1), 0.0) {}
 
-    double& at(int i, int j) { return c[static_cast<std::size_t>(i * (n + 1) + j)]; }
-    double at(int i, int j) const { return c[static_cast<std::size_t>(i * (n + 1) + j)]; }
+    double& at(int i, int j) { return c[index(i, j)]; }
+    double at(int i, int j) const { return c[index(i, j)]; }
+    std::size_t index(int i, int j) const {
+        return static_cast<std::size_t>(i) * static_cast<std::size_t>(n + 1) +
+               static_cast<std::size_t>(j);
+    }
 
     double smallest() const;
     double largest() const;

@@ -62,6 +62,7 @@ class NetSearch {
 
   private:
     using Cell = std::uint64_t;
+    using Segment = std::array<FoundPlace, 2>;
 
     void makeTriangles() {
         Vec low{}, high{};
@@ -160,8 +161,29 @@ class NetSearch {
         std::vector<FoundPlace> found;
         pierce(a, b, j, false, found);
         pierce(b, a, i, true, found);
-        if (found.size() != 2) return;
-        mSegments[{a.net, b.net}].push_back({found[0], found[1]});
+        addSegment({a.net, b.net}, found);
+    }
+
+    static double distance(const NetMeeting& a, const NetMeeting& b) {
+        return std::max(
+            {std::abs(a.u - b.u), std::abs(a.v - b.v), std::abs(a.s - b.s), std::abs(a.t - b.t)});
+    }
+
+    // Where edges meet edges, as in the plane of symmetry of two objects, a place is found twice:
+    // those that are farthest apart are the ends.
+    void addSegment(const std::pair<int, int>& pair, const std::vector<FoundPlace>& found) {
+        constexpr double kNoLength = 1e-6;
+        double longest = kNoLength;
+        std::optional<Segment> best;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            for (std::size_t j = i + 1; j < found.size(); ++j) {
+                const double length = distance(found[i].place, found[j].place);
+                if (length <= longest) continue;
+                longest = length;
+                best = Segment{found[i], found[j]};
+            }
+        }
+        if (best) mSegments[pair].push_back(*best);
     }
 
     // Edges of a that go through b. `swapped`: a is the second of the pair.
@@ -177,10 +199,11 @@ class NetSearch {
             if (a.corners[from] > a.corners[to]) std::swap(from, to);
             const Vec &e = corner(a, from), &f = corner(a, to);
             const double x = side(e, f, p, q), y = side(e, f, q, r), z = side(e, f, r, p);
-            const bool isInside = (x >= 0) == (y >= 0) && (y >= 0) == (z >= 0);
-            if (!isInside) continue;
-            const double share = sides[from] / (sides[from] - sides[to]);
+            // What rounding puts beside the triangle's edge lies on it.
+            constexpr double kRounding = 1e-9;
             const double sum = x + y + z;
+            if (sum == 0 || std::min({x / sum, y / sum, z / sum}) < -kRounding) continue;
+            const double share = sides[from] / (sides[from] - sides[to]);
             const auto onA = between(a, from, to, share);
             const auto onB = weighted(b, {y / sum, z / sum, x / sum});
             FoundPlace place;
@@ -209,8 +232,6 @@ class NetSearch {
         }
         return sum;
     }
-
-    using Segment = std::array<FoundPlace, 2>;
 
     static void appendChains(const std::pair<int, int>& pair, const std::vector<Segment>& segments,
                              std::vector<NetMeetings>& chains) {

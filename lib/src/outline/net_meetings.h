@@ -13,7 +13,8 @@ struct PatchNet {
     std::vector<std::array<double, 3>> points;  ///< [u][v]
 
     const std::array<double, 3>& at(int i, int j) const {
-        return points[static_cast<std::size_t>(i * (steps + 1) + j)];
+        return points[static_cast<std::size_t>(i) * static_cast<std::size_t>(steps + 1) +
+                      static_cast<std::size_t>(j)];
     }
 };
 

@@ -30,6 +30,7 @@ std::vector<PaintLayer> paintLayers(const Outline& outline) {
         sorted[key].push_back(&path);
     }
     std::vector<PaintLayer> layers;
+    layers.reserve(sorted.size());
     for (auto& [key, paths] : sorted) {
         layers.push_back({key[0], key[1] == 1, static_cast<OutlineKind>(key[2]), std::move(paths)});
     }

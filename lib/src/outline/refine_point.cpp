@@ -62,8 +62,12 @@ bool meet(std::span<const ViewPatch> patches, CurvePoint& point) {
     const ViewPatch& first = patches[static_cast<std::size_t>(point.patch)];
     const ViewPatch& second = patches[static_cast<std::size_t>(point.other)];
     std::array<double*, 4> parameters{&point.u, &point.v, &point.s, &point.t};
+    // Where sides of both patches meet, one of them is enough to hold the point.
     std::array<bool, 4> fixed{};
-    for (std::size_t k = 0; k < 4; ++k) fixed[k] = *parameters[k] == 0 || *parameters[k] == 1;
+    for (std::size_t k = 0; k < 4; ++k) {
+        fixed[k] = *parameters[k] == 0 || *parameters[k] == 1;
+        if (fixed[k]) break;
+    }
     for (int step = 0; step < 20; ++step) {
         const ViewPoint p = first.at(point.u, point.v), q = second.at(point.s, point.t);
         const std::array<double, 3> gap{q.x - p.x, q.y - p.y, q.z - p.z};

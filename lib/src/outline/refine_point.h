@@ -12,7 +12,7 @@ CurvePoint pointBetween(std::span<const ViewPatch> patches, const CurvePoint& a,
                         const CurvePoint& b, double share);
 
 /// Puts a point of an intersection, (u, v) and (s, t) of two patches, where both are in the same
-/// place, as near as possible to where it was; parameters on a side of their patch stay there.
+/// place, as near as possible to where it was; one on a side of its patch stays there.
 /// False if that fails.
 bool meet(std::span<const ViewPatch> patches, CurvePoint& point);
 

@@ -14,7 +14,7 @@ bool isConstant(const Bernstein2& p) {
 Bernstein2 foldFunction(const ViewPatch& p) {
     const Bernstein2 xu = derivativeU(p.x), xv = derivativeV(p.x);
     const Bernstein2 yu = derivativeU(p.y), yv = derivativeV(p.y);
-    const Bernstein2 area = xu * yv - xv * yu;
+    Bernstein2 area = xu * yv - xv * yu;
     if (p.w.m == 0 && p.w.n == 0) return area;
     const Bernstein2 wu = derivativeU(p.w), wv = derivativeV(p.w);
     return p.w * area + p.x * (yu * wv - yv * wu) - p.y * (xu * wv - xv * wu);

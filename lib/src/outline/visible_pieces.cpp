@@ -77,6 +77,9 @@ class CurveSight {
 
     CurvePoint pointAt(double length) const {
         const auto [i, share] = mRuler.parts(mRuler.placeAt(length));
+        constexpr double kOnPoint = 1e-9;  // of the way
+        if (share < kOnPoint) return mCurve.points[i];
+        if (share > 1 - kOnPoint) return mCurve.points[i + 1];
         return pointBetween(mPatches, mCurve.points[i], mCurve.points[i + 1], share);
     }
 

@@ -14,6 +14,8 @@ struct KnotAxis {
     int degree;
     const std::vector<double>& knots;
 
+    double knot(int k) const { return knots[static_cast<std::size_t>(k)]; }
+
     // The blossom of the polynomial on knots[span] to knots[span + 1], by de Boor's scheme, at
     // `early` times a and then b. `points`: those that the span depends on, degree + 1.
     Homogeneous blossom(std::vector<Homogeneous> points, int span, std::array<double, 2> ab,
@@ -21,8 +23,7 @@ struct KnotAxis {
         for (int r = 1; r <= degree; ++r) {
             const double t = r <= early ? ab[0] : ab[1];
             for (int j = degree; j >= r; --j) {
-                const double low = knots[static_cast<std::size_t>(span - degree + j)];
-                const double high = knots[static_cast<std::size_t>(span + j - r + 1)];
+                const double low = knot(span - degree + j), high = knot(span + j - r + 1);
                 const double share = (t - low) / (high - low);
                 auto& point = points[static_cast<std::size_t>(j)];
                 const auto& before = points[static_cast<std::size_t>(j) - 1];
@@ -65,7 +66,8 @@ void requireValid(const BsplineNet& net) {
                    std::to_string(BezierPatch::kHighestDegree));
         }
         const auto& knots = net.knots[axis];
-        const auto expected = static_cast<std::size_t>(net.count[axis] + degree + 1);
+        const auto expected =
+            static_cast<std::size_t>(net.count[axis]) + static_cast<std::size_t>(degree) + 1;
         if (net.count[axis] <= degree || knots.size() != expected) {
             refuse(std::to_string(net.count[axis]) + " control points and " +
                    std::to_string(knots.size()) + " knots along an axis of degree " +
@@ -88,7 +90,7 @@ BezierPatch patchOf(const BsplineNet& net, const Span& across, const Span& along
     const KnotAxis u{net.degree[0], net.knots[0]};
     const KnotAxis v{net.degree[1], net.knots[1]};
     BezierPatch patch{.degreeU = u.degree, .degreeV = v.degree};
-    patch.control.resize(static_cast<std::size_t>((u.degree + 1) * (v.degree + 1)));
+    patch.control.resize(patch.index(u.degree, v.degree) + 1);
     std::vector<std::vector<Homogeneous>> columns(static_cast<std::size_t>(v.degree) + 1);
     for (int i = across.index - u.degree; i <= across.index; ++i) {
         const auto row = net.control.begin() + static_cast<std::ptrdiff_t>(i) * net.count[1] +

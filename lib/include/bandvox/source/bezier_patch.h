@@ -18,11 +18,13 @@ struct BezierPatch {
     std::vector<std::array<double, 4>> control;
     int object = 0;  ///< which of a model's objects it belongs to
 
-    const std::array<double, 4>& at(int i, int j) const {
-        return control[static_cast<std::size_t>(i * (degreeV + 1) + j)];
-    }
-    std::array<double, 4>& at(int i, int j) {
-        return control[static_cast<std::size_t>(i * (degreeV + 1) + j)];
+    const std::array<double, 4>& at(int i, int j) const { return control[index(i, j)]; }
+    std::array<double, 4>& at(int i, int j) { return control[index(i, j)]; }
+
+    /// Where the control point i along u, j along v is.
+    std::size_t index(int i, int j) const {
+        return static_cast<std::size_t>(i) * static_cast<std::size_t>(degreeV + 1) +
+               static_cast<std::size_t>(j);
     }
 };
 
