@@ -184,10 +184,11 @@ class ObjSurfaces {
     void appendPatches() {
         // The file has u running fastest.
         BsplineNet net = mNet;
-        for (int i = 0; i < net.count[0]; ++i) {
-            for (int j = 0; j < net.count[1]; ++j) {
-                net.control[static_cast<std::size_t>(i * net.count[1] + j)] =
-                    mNet.control[static_cast<std::size_t>(j * net.count[0] + i)];
+        const auto columns = static_cast<std::size_t>(net.count[0]);
+        const auto rows = static_cast<std::size_t>(net.count[1]);
+        for (std::size_t i = 0; i < columns; ++i) {
+            for (std::size_t j = 0; j < rows; ++j) {
+                net.control[i * rows + j] = mNet.control[j * columns + i];
             }
         }
         if (mModel.objects.empty()) mModel.objects.push_back(mFile.path.stem().string());
