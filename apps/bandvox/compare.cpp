@@ -11,6 +11,7 @@
 #include "words.h"
 
 #include <bandvox/compare/grid_to_surface.h>
+#include <bandvox/grid/grid_place.h>
 #include <bandvox/source/mesh_source.h>
 #include <bandvox/source/read_mesh.h>
 
@@ -221,6 +222,14 @@ void loadGrid(CommandRun& run, const std::string& input, const CompareRequest& r
             ", at most " + formatNumber(loaded.surface.deviation, 3) + " off");
 }
 
+void requireOneWorld(const CompareRequest& request, const std::array<LoadedInput, 2>& loaded) {
+    if (!loaded[0].grid || !loaded[1].grid) return;
+    const std::string place = placeDifference(*loaded[0].grid, *loaded[1].grid);
+    if (place.empty()) return;
+    throw Error(ErrorKind::Input, "'" + request.inputs[0] + "' and '" + request.inputs[1] +
+                                      "' are not in one world: " + place);
+}
+
 void compareAll(CommandRun& run, const CompareRequest& request,
                 const std::array<LoadedInput, 2>& loaded, ComparisonResult& result) {
     if (request.values) {
@@ -304,6 +313,7 @@ void runCompare(const CommandLine& line) {
             loadGrid(run, request.inputs[i], request, loaded[i], known);
         }
     }
+    requireOneWorld(request, loaded);
     compareAll(run, request, loaded, result);
     run.finish();
     writeResult(line.has("json") ? comparisonReport(result).dump(

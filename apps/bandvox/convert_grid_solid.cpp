@@ -16,6 +16,7 @@
 #include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/grid/array_to_solid_grid.h>
 #include <bandvox/grid/density_grid.h>
+#include <bandvox/grid/grid_place.h>
 #include <bandvox/mesh/grid_surface.h>
 #include <bandvox/source/array_source.h>
 #include <bandvox/source/shapes.h>
@@ -161,6 +162,7 @@ GridSolid readGridSolid(CommandRun& run, const GridSolidRequest& request) {
                                           "solid; expected a grid of floats, whole numbers or "
                                           "truths");
     }
+    if (!request.stack.space.empty()) turnToSpace(*solid.grid, request.stack.space);
     warnOfPart(run, *solid.grid, request.input);
     if (request.threshold) {
         solid.iso = request.threshold->low;
@@ -216,7 +218,7 @@ openvdb::FloatGrid::Ptr densityOfDensity(CommandRun& run, const GridSolidRequest
 }
 
 SolidDensity makeDensity(CommandRun& run, const GridSolidRequest& request, const GridSolid& solid,
-                         const openvdb::math::Transform::ConstPtr& onto) {
+                         const openvdb::GridBase::ConstPtr& onto) {
     if (!request.threshold && isDensityOfSolid(*solid.grid)) {
         return {densityOfDensity(run, request, solid.grid,
                                  *targetFor(*solid.grid, request.lattice, onto)),

@@ -24,8 +24,8 @@ void convertGridSolid(ConvertJob& job);
 /// The lattice and the filter for a grid.
 struct RebuildRequest {
     const LatticeRequest& lattice;
-    openvdb::math::Transform::ConstPtr onto;  ///< what readOnto gave
-    const ResampleOptions& resample;          ///< with a filter
+    openvdb::GridBase::ConstPtr onto;  ///< what readOnto gave
+    const ResampleOptions& resample;   ///< with a filter
 };
 
 /// A level set on another lattice: that of its solid's density.

@@ -7,7 +7,6 @@
 
 #include <bandvox/core/sha256.h>
 #include <bandvox/mesh/write_mesh.h>
-#include <bandvox/source/read_mesh.h>
 #include <bandvox/source/shapes.h>
 
 #include <nlohmann/json.hpp>
@@ -49,8 +48,11 @@ std::string digestOfSamples(const fs::path& file) {
 // What a file says of how it was made. Reads all of it, so that a damaged one is found out.
 ConvertStamp readStamp(const std::string& file, Progress& progress) {
     if (!isWritableMesh(file)) return stampOf(readVdb(file));
-    readMesh(file, progress);
-    return fromNotes(readMeshNotes(file));
+    ConvertStamp stamp = fromNotes(readMeshNotes(file));
+    if (!stamp.settings.empty() && !isAsWritten(file, progress)) {
+        throw Error(ErrorKind::Input, "it is damaged, or was changed: its checksum is another");
+    }
+    return stamp;
 }
 
 // The files that two descriptions of an input tell of, without what they share.
@@ -122,7 +124,9 @@ bool ConvertJob::begin() {
     if (!fs::exists(path, ignored) || !fs::is_regular_file(path, ignored)) return true;
     const auto why = whyToRedo(output, mStamp, mRun.progress());
     if (why) {
-        mRun.say("redo     " + output + ": " + *why);
+        // What is wrong with a file names it.
+        const bool isNamed = why->find(output) != std::string::npos;
+        mRun.say("redo     " + (isNamed ? *why : output + ": " + *why));
         return true;
     }
     mRun.skip(output, "it is whole, and made with the same settings from the same input");

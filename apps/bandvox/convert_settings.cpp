@@ -88,7 +88,8 @@ void addSolidDefaults(const CommandLine& line, const Add& add) {
 
 // Of the lattice that a volume is brought to, and of what is taken of it.
 void addLatticeDefaults(const CommandLine& line, const Add& add) {
-    for (const char* name : {"resolution", "voxel-size", "factor", "onto", "grid", "iso"}) {
+    for (const char* name :
+         {"resolution", "voxel-size", "factor", "onto", "grid", "iso", "space"}) {
         add(name, "");
     }
     if (!isStackInput(line.positional(0))) return;
@@ -157,7 +158,7 @@ Settings defaultsOf(const CommandLine& line, Conversion conversion) {
             addResampleDefaults(line, add);
             break;
         case Conversion::VolumeToMesh:
-            for (const char* name : {"grid", "iso"}) add(name, "");
+            for (const char* name : {"grid", "iso", "space"}) add(name, "");
             add("color", "false");
             break;
     }

@@ -6,10 +6,12 @@
 #include "command_run.h"
 #include "iso_option.h"
 #include "mesh_output.h"
+#include "stack_input.h"
 #include "standard_streams.h"
 #include "vdb_input.h"
 #include "words.h"
 
+#include <bandvox/grid/grid_place.h>
 #include <bandvox/mesh/write_mesh.h>
 #include <bandvox/source/shapes.h>
 
@@ -33,6 +35,7 @@ void convertGridToMesh(ConvertJob& job) {
                "onto",       "no-filter",  "lod",    "band",  "points",      "radius"},
         "where a mesh is made of a .vdb file, which is not filtered again");
     const std::string& input = line.positional(0);
+    const StackRequest place = readStackRequest(line, input);
     MeshOutput options = readMeshOutput(line);
     const IsoOption iso = readIso(line, {});
     if (!job.begin()) return;
@@ -50,6 +53,11 @@ void convertGridToMesh(ConvertJob& job) {
     // Colours are asked for by name if they are asked for.
     const openvdb::Vec3SGrid::Ptr colors = chooseColorGrid(
         grids, line.has("color") ? std::optional<std::string>("Cd") : std::nullopt, input);
+    if (!place.space.empty()) {
+        turnToSpace(*grid, place.space);
+        // As the density is, of whose colours it is.
+        if (colors) colors->setTransform(grid->transformPtr()->copy());
+    }
     run.say("read     " + input + ": grid '" + grid->getName() + "', " +
             formatCount(static_cast<std::int64_t>(grid->activeVoxelCount()), "active voxel",
                         "active voxels") +

@@ -18,6 +18,7 @@
 
 #include <bandvox/grid/array_to_grid.h>
 #include <bandvox/grid/density_grid.h>
+#include <bandvox/grid/grid_place.h>
 #include <bandvox/resample/detail_levels.h>
 #include <bandvox/resample/resample_grid.h>
 #include <bandvox/resample/resample_vectors.h>
@@ -119,7 +120,7 @@ void sayGrid(CommandRun& run, const openvdb::GridBase& grid) {
 // A level set and its levels of detail, each that of the solid filtered for its lattice.
 openvdb::GridPtrVec convertLevelSet(CommandRun& run, const VolumeRequest& request,
                                     const openvdb::FloatGrid::Ptr& grid,
-                                    const openvdb::math::Transform::ConstPtr& onto) {
+                                    const openvdb::GridBase::ConstPtr& onto) {
     if (!request.resample.shard.isWhole()) {
         throw Error(ErrorKind::Usage, "--shard has no meaning for the level set '" +
                                           grid->getName() + "', which is rebuilt as a whole");
@@ -132,7 +133,8 @@ openvdb::GridPtrVec convertLevelSet(CommandRun& run, const VolumeRequest& reques
     for (int level = 1; level <= request.levels; ++level) {
         LatticeRequest coarser;
         coarser.factor = std::ldexp(1.0, level);
-        const auto lattice = targetFor(*first, coarser, nullptr);
+        const auto lattice = openvdb::FloatGrid::create();
+        lattice->setTransform(targetFor(*first, coarser, nullptr));
         const auto made = rebuildLevelSet(run, grid, {coarser, lattice, request.resample});
         nameDetailLevel(*made, *first, level);
         result.push_back(made);
@@ -140,10 +142,29 @@ openvdb::GridPtrVec convertLevelSet(CommandRun& run, const VolumeRequest& reques
     return result;
 }
 
+struct VectorTarget {
+    const openvdb::math::Transform& lattice;
+    const ResampleOptions& options;
+};
+
+openvdb::GridPtrVec convertVectors(CommandRun& run, const VolumeRequest& request,
+                                   const openvdb::Vec3SGrid::Ptr& grid,
+                                   const VectorTarget& target) {
+    openvdb::Vec3SGrid::Ptr first = grid;
+    if (request.resamples) {
+        first = resampleVectors(grid, target.lattice, target.options, run.progress());
+    }
+    openvdb::GridPtrVec result{first};
+    if (request.levels == 0) return result;
+    const auto levels = makeDetailLevels(first, request.levels, target.options, run.progress());
+    result.insert(result.end(), levels.begin(), levels.end());
+    return result;
+}
+
 // The grids that are written for one that is read; none if it is of a type that cannot be filtered.
 openvdb::GridPtrVec convertGrid(CommandRun& run, const VolumeRequest& request,
                                 const openvdb::GridBase::Ptr& grid,
-                                const openvdb::math::Transform::ConstPtr& onto) {
+                                const openvdb::GridBase::ConstPtr& onto) {
     openvdb::GridPtrVec result;
     const Shard& shard = request.resample.shard;
     if (grid->activeVoxelCount() == 0 || (!request.resamples && request.levels == 0)) {
@@ -153,17 +174,20 @@ openvdb::GridPtrVec convertGrid(CommandRun& run, const VolumeRequest& request,
     warnOfPart(run, *grid, request.input);
     const auto target = targetFor(*grid, request.lattice, onto);
     if (const auto vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grid)) {
-        if (!request.resamples) return {grid};
         // They are made whole, by the first machine.
         if (shard.index > 1) return {};
         ResampleOptions whole = request.resample;
         whole.shard = {};
-        return {resampleVectors(vectors, *target, whole, run.progress())};
+        return convertVectors(run, request, vectors, {*target, whole});
     }
     openvdb::FloatGrid::Ptr floats = asFloatGrid(grid);
     // Filtered distances are none; those of the filtered solid are.
     if (floats && floats->getGridClass() == openvdb::GRID_LEVEL_SET && request.resample.filter) {
         return convertLevelSet(run, request, floats, onto);
+    }
+    if (floats && !grid->isType<openvdb::FloatGrid>()) {
+        run.say("grid     '" + grid->getName() + "' of type " + grid->valueType() +
+                " becomes one of floats");
     }
     if (!floats) {
         run.warn({"the grid '" + grid->getName() + "' of type " + grid->valueType() +
@@ -205,9 +229,27 @@ openvdb::GridPtrVec readChosen(CommandRun& run, const VolumeRequest& request) {
         throw Error(ErrorKind::Input,
                     "'" + request.input + "' has no grids; expected one at least");
     }
-    if (request.array) return {chooseFloatGrid(grids, request.grid, "density", request.input)};
-    if (!request.grid) return grids;
-    return {chooseGrid(grids, *request.grid, request.input)};
+    if (request.array) {
+        grids = {chooseFloatGrid(grids, request.grid, "density", request.input)};
+    } else if (request.grid) {
+        grids = {chooseGrid(grids, *request.grid, request.input)};
+    }
+    for (const openvdb::GridBase::Ptr& grid : grids) {
+        if (!request.stack.space.empty()) turnToSpace(*grid, request.stack.space);
+    }
+    return grids;
+}
+
+// What can be known of it before the work.
+void requireIsoHasMeaning(const VolumeRequest& request, const openvdb::GridPtrVec& grids) {
+    const bool areLevelSets = std::all_of(grids.begin(), grids.end(), [](const auto& grid) {
+        return grid->getGridClass() == openvdb::GRID_LEVEL_SET;
+    });
+    if (!request.iso.isGiven() || !areLevelSets) return;
+    throw Error(ErrorKind::Usage,
+                "--iso is stored with densities, and '" + request.input +
+                    "' holds level sets, whose surface is 0; expected --as level-set with it, for "
+                    "that of a density made of them");
 }
 
 void setIso(openvdb::GridBase& grid, double iso) {
@@ -263,9 +305,11 @@ void convertVolume(ConvertJob& job) {
     CommandRun& run = job.run();
     std::optional<AtomicFile> output;
     if (!request.array) output.emplace(request.output);
-    const openvdb::math::Transform::ConstPtr onto = readOnto(request.lattice);
+    const openvdb::GridBase::ConstPtr onto = readOnto(request.lattice);
     run.say("read     " + request.input);
     openvdb::GridPtrVec grids = readChosen(run, request);
+
+    requireIsoHasMeaning(request, grids);
 
     openvdb::GridCPtrVec written;
     std::int64_t activeVoxels = 0;

@@ -4,6 +4,7 @@
 #include "words.h"
 
 #include <bandvox/core/error.h>
+#include <bandvox/grid/grid_place.h>
 #include <bandvox/resample/resample_grid.h>
 
 #include <algorithm>
@@ -69,19 +70,25 @@ LatticeRequest readLattice(const CommandLine& line) {
     return lattice;
 }
 
-openvdb::math::Transform::ConstPtr readOnto(const LatticeRequest& request) {
+openvdb::GridBase::ConstPtr readOnto(const LatticeRequest& request) {
     if (!request.onto) return nullptr;
     const openvdb::GridPtrVec grids = readGrids(*request.onto);
     if (grids.empty()) {
         throw Error(ErrorKind::Input, "'" + *request.onto + "' has no grids, so no lattice");
     }
-    return grids.front()->transformPtr();
+    return grids.front()->copyGridWithNewTree();
 }
 
 openvdb::math::Transform::Ptr targetFor(const openvdb::GridBase& grid,
                                         const LatticeRequest& request,
-                                        const openvdb::math::Transform::ConstPtr& onto) {
-    if (onto) return onto->copy();
+                                        const openvdb::GridBase::ConstPtr& onto) {
+    if (onto) {
+        const std::string difference = placeDifference(grid, *onto);
+        if (difference.empty()) return onto->transform().copy();
+        throw Error(ErrorKind::Input, "the grid '" + grid.getName() + "' and that of --onto '" +
+                                          request.onto.value_or("") +
+                                          "' are not in one world: " + difference);
+    }
     if (request.voxelSize) return uniformLattice(grid, *request.voxelSize);
     if (request.resolution) {
         const openvdb::Vec3d size =
@@ -95,7 +102,7 @@ openvdb::math::Transform::Ptr targetFor(const openvdb::GridBase& grid,
 }
 
 openvdb::math::Transform::Ptr cubesFor(const openvdb::GridBase& grid, const LatticeRequest& request,
-                                       const openvdb::math::Transform::ConstPtr& onto) {
+                                       const openvdb::GridBase::ConstPtr& onto) {
     auto target = targetFor(grid, request, onto);
     if (hasCubes(*target)) return target;
     if (onto && request.onto) {

@@ -11,6 +11,7 @@
 #include "words.h"
 
 #include <bandvox/grid/density_grid.h>
+#include <bandvox/grid/grid_place.h>
 #include <bandvox/grid/merge_grids.h>
 #include <bandvox/grid/same_lattice.h>
 #include <bandvox/resample/resample_grid.h>
@@ -154,6 +155,10 @@ openvdb::FloatGrid::Ptr chooseDensity(CommandRun& run, const openvdb::GridPtrVec
 openvdb::FloatGrid::ConstPtr alignedTo(CommandRun& run, const openvdb::FloatGrid& first,
                                        const openvdb::FloatGrid::ConstPtr& grid,
                                        const std::string& input, const MergeRequest& request) {
+    if (const std::string place = placeDifference(first, *grid); !place.empty()) {
+        throw Error(ErrorKind::Input, "'" + request.inputs[0] + "' and '" + input +
+                                          "' are not in one world: " + place);
+    }
     const std::string difference = latticeDifference(first.transform(), grid->transform());
     if (difference.empty()) return grid;
     if (!request.resamples) {

@@ -4,9 +4,12 @@
 #include "words.h"
 
 #include <bandvox/core/error.h>
+#include <bandvox/source/read_mesh.h>
 #include <bandvox/source/shapes.h>
 
 #include <nlohmann/json.hpp>
+
+#include <array>
 
 namespace bandvox::app {
 namespace {
@@ -32,6 +35,10 @@ std::vector<OptionEntry> stackEntries() {
          volumes},
         {"origin", 0, "X,Y,Z", "as the file says, else 0",
          "The same for the place of its first voxel's centre.", volumes},
+        {"space", 0, "LPS|RAS", "as the file says",
+         "Of scans and their grids, where the result's axes point: to left, posterior and superior "
+         "as those of DICOM do, or to right, anterior and superior.",
+         volumes},
         {"channel", 0, "NAME", "",
          "Of images with several channels, the one to take: R, G, B, A, luminance, or a number "
          "from 0. Needed unless R, G and B are equal and nothing is transparent.",
@@ -55,17 +62,26 @@ StackRequest readStackRequest(const CommandLine& line, const std::string& input)
                                               "' is none");
         }
     }
+    if (line.has("space") && !isStackInput(input) &&
+        (isShape(input) || extensionOf(input) != ".vdb")) {
+        throw Error(ErrorKind::Usage, "option --space is for scans and .vdb files, and '" + input +
+                                          "' does not say where its axes point");
+    }
     StackRequest request;
     request.options.channel = line.text("channel").value_or("");
     request.options.series = line.text("series").value_or("");
     request.spacing = readSpacing(line);
     request.origin = line.vector("origin", kAnyPlace);
+    if (line.has("space")) {
+        request.space = std::array{"LPS", "RAS"}[line.choice("space", {"LPS", "RAS"}, 0)];
+    }
     return request;
 }
 
 std::unique_ptr<ArraySource> openStack(const std::string& input, const StackRequest& request) {
     auto source = openArray(input, request.options);
     source->place(request.spacing, request.origin);
+    if (!request.space.empty()) source->turnTo(request.space);
     return source;
 }
 

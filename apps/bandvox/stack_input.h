@@ -13,17 +13,18 @@
 // Arrays, stacks of images and DICOM series as inputs.
 namespace bandvox::app {
 
-/// The options --channel, --series, --spacing and --origin.
+/// The options --channel, --series, --spacing, --origin and --space.
 std::vector<OptionEntry> stackEntries();
 
 /// What these options ask for.
 struct StackRequest {
     ArrayReadOptions options;
     std::optional<openvdb::Vec3d> spacing, origin;
+    std::string space;  ///< "LPS", "RAS", or empty: as it is
 };
 
-/// Throws Error(ErrorKind::Usage) for values that are none, and if one was given and the input is
-/// no array.
+/// Throws Error(ErrorKind::Usage) for values that are none, and if one other than --space was given
+/// and the input is no array.
 StackRequest readStackRequest(const CommandLine& line, const std::string& input);
 
 /// True if the input is an array, an image, a pattern of them, a folder, or of DICOM.

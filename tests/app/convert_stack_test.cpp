@@ -261,6 +261,60 @@ TEST_F(ConvertStack, RefusesVoxelsThatTransformsCannotHold) {
     }
 }
 
+TEST_F(ConvertStack, KnowsTheSpacesOfScans) {
+    const std::string head =
+        "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 6 6 6\nspace directions: (1,0,0) (0,1,0) "
+        "(0,0,2)\nspace origin: (10,20,30)\nencoding: raw\n";
+    const std::string values(6 * 6 * 6, '\7');
+    writeText(mFolder / "ras.nrrd", head + "space: RAS\n\n" + values);
+    writeText(mFolder / "lps.nrrd", head + "space: left-posterior-superior\n\n" + values);
+    writeText(mFolder / "none.nrrd", head + "space dimension: 3\n\n" + values);
+    const auto placeOf = [&](const std::string& file) {
+        const auto grid = readVdb(mFolder / file).front();
+        return grid->indexToWorld(Coord(1, 2, 3));
+    };
+    for (const char* name : {"ras", "lps", "none"}) {
+        expectDone({std::string(name) + ".nrrd", "-o", std::string(name) + ".vdb"});
+    }
+    EXPECT_EQ(placeOf("ras.vdb"), openvdb::Vec3d(11, 22, 36));
+    // From a scan, a grid, and on the way to a solid, a mesh and another scan.
+    expectDone({"ras.nrrd", "-o", "turned.vdb", "--space", "LPS"});
+    EXPECT_EQ(placeOf("turned.vdb"), openvdb::Vec3d(-11, -22, 36));
+    expectDone({"ras.vdb", "-o", "turned.vdb", "--space", "LPS"});
+    EXPECT_EQ(placeOf("turned.vdb"), openvdb::Vec3d(-11, -22, 36));
+    expectDone({"ras.vdb", "-o", "turned.vdb", "--space", "LPS", "--factor", "2"});
+    EXPECT_EQ(placeOf("turned.vdb"), openvdb::Vec3d(-12, -24, 42));
+    expectDone({"ras.vdb", "-o", "solid.vdb", "--space", "LPS", "--threshold", "3"});
+    const auto solid = readVdb(mFolder / "solid.vdb").front();
+    const auto box = solid->evalActiveVoxelBoundingBox();
+    EXPECT_LT((solid->indexToWorld(box.getCenter()) - openvdb::Vec3d(-12.5, -22.5, 35)).length(),
+              1);
+    expectDone({"ras.vdb", "-o", "solid.ply", "--space", "LPS", "--iso", "3"});
+    expectDone({"ras.vdb", "-o", "turned.mha"});
+    expectDone({"turned.mha", "-o", "back.vdb", "--space", "RAS"});
+    EXPECT_EQ(placeOf("back.vdb"), placeOf("ras.vdb"));
+
+    // Two spaces are not mixed; what says none goes with both.
+    const Words said{"left-posterior-superior", "right-anterior-superior"};
+    expectFailure({"ras.vdb", "-o", "no.vdb", "--onto", "lps.vdb"}, 3, said);
+    expectDone({"ras.vdb", "-o", "onto.vdb", "--onto", "none.vdb"});
+    for (const Words& words : {Words{"merge", "ras.vdb", "lps.vdb", "-o", "no.vdb"},
+                               {"compare", "ras.vdb", "lps.vdb", "--only", "values"}}) {
+        const RunResult result = runBandvox(words, {.folder = mFolder.path()});
+        EXPECT_EQ(result.status, 3) << result.err;
+        for (const std::string& one : said) {
+            EXPECT_NE(result.err.find(one), std::string::npos) << result.err;
+        }
+    }
+    const RunResult same = runBandvox({"compare", "ras.vdb", "back.vdb", "--only", "values"},
+                                      {.folder = mFolder.path()});
+    EXPECT_EQ(same.status, 0) << same.err;
+    expectFailure({"none.vdb", "-o", "no.vdb", "--space", "LPS"}, 2, {"does not say"});
+    expectFailure({"none.nrrd", "-o", "no.vdb", "--space", "LPS"}, 2, {"does not say"});
+    expectFailure({"shape:ball", "-o", "no.vdb", "--space", "LPS"}, 2, {"--space"});
+    EXPECT_FALSE(std::filesystem::exists(mFolder / "no.vdb"));
+}
+
 TEST_F(ConvertStack, RefusesWhatDoesNotGoTogether) {
     expectDone({"a.npy", "-o", "a.vdb"});
     const std::vector<std::pair<Words, Words>> cases{

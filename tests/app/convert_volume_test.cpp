@@ -167,6 +167,34 @@ TEST_F(ConvertVolume, TakesGridsOfOtherKinds) {
     EXPECT_EQ(convert({"kinds.vdb", "-o", "out.vdb", "--factor", "3", "--strict"}).status, 4);
 }
 
+TEST_F(ConvertVolume, ColoursHaveLevelsOfDetailToo) {
+    ASSERT_EQ(convert({"cube.vdb", "-o", "levels.vdb", "--lod", "2"}).status, 0);
+    std::vector<std::string> names;
+    for (const auto& grid : read("levels.vdb")) names.push_back(grid->getName());
+    EXPECT_EQ(names, (std::vector<std::string>{"density", "density_level_1", "density_level_2",
+                                               "Cd", "Cd_level_1", "Cd_level_2"}));
+    const auto coarse = openvdb::gridPtrCast<openvdb::Vec3SGrid>(read("levels.vdb")[5]);
+    ASSERT_TRUE(coarse);
+    EXPECT_NEAR(coarse->voxelSize()[0], 4 * density("cube.vdb")->voxelSize()[0], 1e-12);
+    const double top = coarse->worldToIndex({0, 0, 1})[2];
+    EXPECT_NEAR(coarse->tree().getValue(Coord(0, 0, static_cast<int>(std::round(top))))[2], 1,
+                0.02);
+}
+
+// A level set's surface is 0: the work of rebuilding it is not to be for nothing.
+TEST_F(ConvertVolume, RefusesAnIsoOfLevelSetsAtOnce) {
+    ASSERT_EQ(convert({"cube.vdb", "-o", "distances.vdb", "--as", "level-set"}).status, 0);
+    const RunResult result =
+        convert({"distances.vdb", "-o", "no.vdb", "--factor", "2", "--iso", "volume"});
+    EXPECT_EQ(result.status, 2);
+    EXPECT_NE(result.err.find("--as level-set"), std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find("resample"), std::string::npos) << result.err;
+    EXPECT_EQ(convert({"distances.vdb", "-o", "half.vdb", "--factor", "2", "--iso", "volume",
+                       "--as", "level-set"})
+                  .status,
+              0);
+}
+
 TEST_F(ConvertVolume, TakesArrays) {
     // A ball in a MetaImage, 40 values a side of 0.5 mm.
     std::string values;
@@ -180,7 +208,8 @@ TEST_F(ConvertVolume, TakesArrays) {
                   values);
     const RunResult result = convert({"ball.mha", "-o", "ball.vdb"});
     ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_NE(result.err.find("40 x 40 x 40 values of type uint8, axes LPS"), std::string::npos)
+    EXPECT_NE(result.err.find("40 x 40 x 40 values of type uint8, axes left-posterior-superior"),
+              std::string::npos)
         << result.err;
     const auto ball = density("ball.vdb");
     EXPECT_EQ(ball->tree().getValue(Coord(20)), 100);

@@ -214,6 +214,11 @@ TEST_F(Stamp, MeshesSayItToo) {
         writeText(mFolder / name, whole.substr(0, whole.size() * 9 / 10));
         expectRedone(other, name);
         expectSkipped(other, name);
+        // One digit of a coordinate, which leaves a mesh that can be read.
+        std::string changed = whole;
+        changed[whole.size() / 2] = static_cast<char>(changed[whole.size() / 2] ^ 1);
+        writeText(mFolder / name, changed);
+        expectRedone(other, "checksum");
     }
     const RunResult stl =
         run({"convert", "cube.obj", "-o", "a.stl", "-r", "16", "--skip-existing"});

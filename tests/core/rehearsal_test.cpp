@@ -3,6 +3,7 @@
 #include <bandvox/core/error.h>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
@@ -61,6 +62,27 @@ TEST(Rehearsal, EndsWhatTakesTooLong) {
         return "ended";
     };
     EXPECT_EQ(rehearseSilently(forever, {1, 0}), "took more than 1 seconds");
+}
+
+TEST(Rehearsal, EndsWhatWaitsForNothing) {
+    const auto waits = []() -> std::string {
+        while (true) pause();
+    };
+    // The clock's limit is a multiple of the processor's.
+    EXPECT_EQ(rehearseSilently(waits, {0, 0}), "took more than 0 seconds");
+}
+
+TEST(Rehearsal, DoesNotBlameTheFileForWhatTheSystemEnds) {
+    const auto ended = []() -> std::string {
+        std::raise(SIGKILL);
+        return "went on";
+    };
+    try {
+        rehearseSilently(ended);
+        FAIL() << "it was not noticed";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::Memory);
+    }
 }
 
 #ifndef BANDVOX_SANITIZED

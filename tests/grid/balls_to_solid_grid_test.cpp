@@ -92,6 +92,39 @@ TEST(BallsToSolidGrid, ManyAreTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(volumes[2], volumes[0]);
 }
 
+TEST(BallsToSolidGrid, ManyLargeOnesAreTheirUnion) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> anywhere(-6, 6), radius(0.9, 2);
+    std::vector<Vec3d> centers;
+    std::vector<double> radii;
+    for (int i = 0; i < 37; ++i) {
+        centers.emplace_back(anywhere(random), anywhere(random), anywhere(random));
+        radii.push_back(radius(random));
+    }
+    const auto grid = ballsToSolidGrid({centers, radii}, 0.05).grid;
+    const double voxel = grid->voxelSize()[0];
+    ASSERT_GT(0.9, 32 * voxel) << "they are no shells";
+    const auto values = grid->getConstAccessor();
+    int near = 0;
+    for (int i = 0; i < 200000; ++i) {
+        const Vec3d place(anywhere(random), anywhere(random), anywhere(random));
+        const auto at = openvdb::Coord::round(grid->worldToIndex(place));
+        double distance = 1e9;
+        for (std::size_t k = 0; k < radii.size(); ++k) {
+            const Vec3d center = centers[k];
+            distance = std::min(distance, (grid->indexToWorld(at) - center).length() - radii[k]);
+        }
+        const double found = values.getValue(at);
+        if (std::abs(distance) < 1.5 * voxel) {
+            ++near;
+            EXPECT_NEAR(found, distance, 0.02 * voxel);
+        } else {
+            EXPECT_EQ(found < 0, distance < 0);
+        }
+    }
+    EXPECT_GT(near, 500);
+}
+
 TEST(BallsToSolidGrid, CountsWhatIsTooSmall) {
     const std::vector<Vec3d> centers{{0, 0, 0}, {5, 0, 0}, {10, 0, 0}};
     const std::vector<double> radii{2, 0, 0.1};

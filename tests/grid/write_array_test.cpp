@@ -242,6 +242,22 @@ TEST_F(WriteArray, KeepsTheUnitAndTheSpace) {
     EXPECT_EQ(openArray(mFolder / "p.nrrd")->info().unit, "");
 }
 
+// Readers of MetaImage take a scan's world for left-posterior-superior.
+TEST_F(WriteArray, TurnsAScanToTheWorldOfMetaImage) {
+    const auto grid = makeGrid(false);
+    setPlaceMetadata(*grid, {"mm", "RAS"});
+    write(mFolder / "p.mha", ArrayFormat::MetaImage, *grid);
+    const auto array = openArray(mFolder / "p.mha");
+    EXPECT_EQ(array->info().space, "left-posterior-superior");
+    array->turnTo("RAS");
+    const auto back = arrayToGrid(*array);
+    const Coord first = grid->evalActiveVoxelBoundingBox().min();
+    EXPECT_LT((back->indexToWorld(Coord(0)) - grid->indexToWorld(first)).length(), 1e-12);
+    EXPECT_LT(
+        (back->indexToWorld(Coord(3, 4, 5)) - grid->indexToWorld(first + Coord(3, 4, 5))).length(),
+        1e-12);
+}
+
 TEST_F(WriteArray, TakesTheBoxThatIsAskedFor) {
     const auto grid = makeGrid(false);
     ArrayWriteOptions options;

@@ -96,6 +96,27 @@ TEST_F(MeshFiles, NotesComeBack) {
     EXPECT_EQ(readMeshNotes(mFolder / "none.ply"), std::vector<std::string>{});
 }
 
+TEST_F(MeshFiles, AChangedByteIsNoticed) {
+    SurfaceMesh mesh = octahedron();
+    mesh.notes = {"settings: a=1"};
+    for (const char* name : {"a.ply", "a.obj", "a.gltf", "a.glb"}) {
+        const std::string whole = write(name, mesh);
+        EXPECT_TRUE(isAsWritten(mFolder / name)) << name;
+        for (std::size_t at = 0; at < whole.size(); at += 1 + whole.size() / 97) {
+            std::string changed = whole;
+            changed[at] = static_cast<char>(changed[at] ^ 1);
+            std::ofstream(mFolder / name, std::ios::binary) << changed;
+            EXPECT_FALSE(isAsWritten(mFolder / name)) << name << " at " << at;
+        }
+        std::ofstream(mFolder / name, std::ios::binary) << whole << ' ';
+        EXPECT_FALSE(isAsWritten(mFolder / name)) << name << " with a byte more";
+    }
+    mesh.notes.clear();
+    write("a.ply", mesh);
+    EXPECT_FALSE(isAsWritten(mFolder / "a.ply")) << "without notes there is nothing to tell by";
+    EXPECT_FALSE(isAsWritten(mFolder / "none.ply"));
+}
+
 TEST_F(MeshFiles, EveryFormatReadsBackAsItWas) {
     for (const std::string& extension : writableMeshExtensions()) {
         SCOPED_TRACE(extension);

@@ -228,6 +228,74 @@ TEST_F(ArrayFile, SaysWhereVoxelsLie) {
     EXPECT_EQ(meta->info().toWorld.transform(Vec3d(1, 2, 4)), Vec3d(10 - 3, -20 + 2, 30 + 12));
 }
 
+// Axes of NRRD each by itself: spacings of which some are not known, and ends.
+TEST_F(ArrayFile, TakesTheEndsOfAxes) {
+    const std::string raw = valueBytes<std::int16_t>();
+    const auto infoOf = [&](const std::string& fields) {
+        return openArray(write("axes.nrrd",
+                               "NRRD0004\ntype: short\ndimension: 3\nsizes: 5 3 4\nencoding: "
+                               "raw\nendian: little\n" +
+                                   fields + "\n" + raw))
+            ->info();
+    };
+    const auto placeOf = [](const ArrayInfo& info, const Vec3d& index) {
+        return info.toWorld.transform(index);
+    };
+    EXPECT_EQ(placeOf(infoOf("spacings: 2 nan 0.5\n"), Vec3d(1, 1, 1)), Vec3d(2, 1, 0.5));
+    EXPECT_TRUE(infoOf("spacings: 2 NaN 0.5\n").hasTransform);
+    EXPECT_FALSE(infoOf("spacings: nan nan nan\n").hasTransform);
+    // Ends are those of cells, or the nodes themselves.
+    const std::string ends = "axis mins: 10 20 30\naxis maxs: 15 26 32\n";
+    EXPECT_EQ(placeOf(infoOf(ends), Vec3d(0.0)), Vec3d(10.5, 21, 30.25));
+    EXPECT_EQ(placeOf(infoOf(ends), Vec3d(1, 1, 1)), Vec3d(11.5, 23, 30.75));
+    const auto nodes =
+        infoOf("axis mins: 10 20 30\naxis maxs: 14 26 33\ncenterings: node node node\n");
+    EXPECT_EQ(placeOf(nodes, Vec3d(0.0)), Vec3d(10, 20, 30));
+    EXPECT_EQ(placeOf(nodes, Vec3d(1, 1, 1)), Vec3d(11, 23, 31));
+    // A spacing counts more than the other end.
+    const auto both = infoOf("axis mins: 10 nan 30\nspacings: 2 4 nan\ncenters: node ??? cell\n");
+    EXPECT_EQ(placeOf(both, Vec3d(0.0)), Vec3d(10, 0, 30));
+    EXPECT_EQ(placeOf(both, Vec3d(1, 1, 1)), Vec3d(12, 4, 31));
+    EXPECT_THROW(infoOf("spacings: 2 nan\n"), Error);
+    EXPECT_THROW(infoOf("axis mins: 1 2 three\n"), Error);
+    EXPECT_THROW(infoOf("axis mins: 1 2 3\naxis maxs: 1 3 4\n"), Error) << "no step along x";
+}
+
+TEST_F(ArrayFile, ItsSpaceIsThatOfTheWorld) {
+    const std::string raw = valueBytes<std::int16_t>();
+    const std::string meta = "NDims = 3\nDimSize = 5 3 4\nElementType = MET_SHORT\n";
+    const auto spaceOf = [&](const std::string& orientation) {
+        return openArray(write("o.mha", meta + orientation + "ElementDataFile = LOCAL\n" + raw))
+            ->info()
+            .space;
+    };
+    // Where the axes of the array come from says nothing of the world, which is always the same.
+    EXPECT_EQ(spaceOf("AnatomicalOrientation = RAI\n"), "left-posterior-superior");
+    EXPECT_EQ(spaceOf("AnatomicalOrientation = RAS\n"), "left-posterior-superior");
+    EXPECT_EQ(spaceOf("AnatomicalOrientation = ???\n"), "");
+    EXPECT_EQ(spaceOf(""), "");
+
+    const auto nrrd = openArray(write("ras.nrrd",
+                                      "NRRD0004\ntype: short\ndimension: 3\nsizes: 5 3 4\nspace: "
+                                      "RAS\nspace directions: (1,0,0) (0,2,0) (0,0,3)\nspace "
+                                      "origin: (10,20,30)\nencoding: raw\n\n" +
+                                          raw));
+    EXPECT_EQ(nrrd->info().space, "right-anterior-superior");
+    nrrd->turnTo("LPS");
+    EXPECT_EQ(nrrd->info().space, "left-posterior-superior");
+    EXPECT_EQ(nrrd->info().toWorld.transform(Vec3d(1, 1, 1)), Vec3d(-11, -22, 33));
+    EXPECT_THROW(openArray(mFolder / "o.mha")->turnTo("RAS"), Error) << "it says no space";
+}
+
+TEST_F(ArrayFile, SaysWhatItDoesNotRead) {
+    const std::string raw = valueBytes<std::int16_t>();
+    const std::string head = "NRRD0004\ntype: short\ndimension: 3\nsizes: 5 3 4\nencoding: raw\n\n";
+    EXPECT_TRUE(openArray(write("exact.nrrd", head + raw))->info().notes.empty());
+    const auto notes = openArray(write("more.nrrd", head + raw + "1234567"))->info().notes;
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_TRUE(notes[0].starts_with("7 bytes")) << notes[0];
+}
+
 TEST_F(ArrayFile, RefusesWhatIsNone) {
     const std::string raw = valueBytes<std::int16_t>();
     const std::string good = "{'descr': '<i2', 'fortran_order': True, 'shape': (5, 3, 4), }";

@@ -1,5 +1,7 @@
 #include "core/rehearsal.h"
 
+#include <bandvox/core/error.h>
+
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/prctl.h>
@@ -10,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <exception>
 #include <fstream>
@@ -26,17 +29,23 @@ std::int64_t addressesInUse() {
     return pages * sysconf(_SC_PAGESIZE);
 }
 
-void setLimit(int resource, std::int64_t most) {
-    const auto value = static_cast<rlim_t>(most);
-    const rlimit limit{value, value};
+void setLimit(int resource, std::int64_t soft, std::int64_t hard) {
+    const rlimit limit{static_cast<rlim_t>(soft), static_cast<rlim_t>(hard)};
     setrlimit(static_cast<__rlimit_resource>(resource), &limit);
 }
 
+/// The process that is copied.
+struct Original {
+    pid_t process = 0;
+    std::int64_t bytes = 0;  ///< of addresses in use
+};
+
 /// In the copy: becomes one that harms nobody, works, and writes what went wrong to `out`.
 [[noreturn]] void workAndEnd(const std::function<std::string()>& work,
-                             const RehearsalLimits& limits, std::int64_t inUse, int out) {
+                             const RehearsalLimits& limits, const Original& original, int out) {
     // It ends with the process that waits for it, and leaves the user's wishes to that.
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != original.process) _exit(1);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGABRT, SIGSEGV}) {
         std::signal(signal, SIG_DFL);
     }
@@ -46,9 +55,12 @@ void setLimit(int resource, std::int64_t most) {
             dup2(nowhere, stream);
         }
     }
-    setLimit(RLIMIT_CORE, 0);
-    setLimit(RLIMIT_CPU, limits.seconds);
-    if (limits.bytes > 0) setLimit(RLIMIT_AS, inUse + limits.bytes);
+    setLimit(RLIMIT_CORE, 0, 0);
+    // Beyond the softer limit comes a signal of its own.
+    setLimit(RLIMIT_CPU, limits.seconds, limits.seconds + 5);
+    if (limits.bytes > 0) {
+        setLimit(RLIMIT_AS, original.bytes + limits.bytes, original.bytes + limits.bytes);
+    }
     std::string wrong;
     try {
         wrong = work();
@@ -63,19 +75,29 @@ void setLimit(int resource, std::int64_t most) {
     _exit(isWritten ? 0 : 1);
 }
 
+using Clock = std::chrono::steady_clock;
+
+/// What a copy had to say.
+struct Spoken {
+    std::string words;
+    bool isTooLate = false;  ///< it was ended for waiting, as for a lock that nobody holds any more
+};
+
 /// Waits until the other end of the pipe is closed, which the copy's end does at the latest.
-std::string readAll(int in, pid_t copy, Progress& progress) {
+Spoken readAll(int in, pid_t copy, Clock::time_point latest, Progress& progress) {
     constexpr int kMilliseconds = 20;
-    std::string all;
+    Spoken spoken;
+    std::string& all = spoken.words;
     std::array<char, 4096> part;
     while (true) {
         pollfd wanted{in, POLLIN, 0};
         if (poll(&wanted, 1, kMilliseconds) > 0) {
             const ssize_t size = read(in, part.data(), part.size());
             if (size > 0) all.append(part.data(), static_cast<std::size_t>(size));
-            if (size == 0 || (size < 0 && errno != EINTR)) return all;
+            if (size == 0 || (size < 0 && errno != EINTR)) return spoken;
         }
-        if (progress.interrupted()) kill(copy, SIGKILL);
+        spoken.isTooLate = spoken.isTooLate || Clock::now() > latest;
+        if (spoken.isTooLate || progress.interrupted()) kill(copy, SIGKILL);
     }
 }
 
@@ -85,24 +107,32 @@ std::string rehearse(const std::function<std::string()>& work, const RehearsalLi
                      Progress& progress) {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) return {};
-    const std::int64_t inUse = addressesInUse();
+    const Original original{getpid(), addressesInUse()};
+    // Of a machine that does much else the copy may get a tenth.
+    const auto latest = Clock::now() + 10 * std::chrono::seconds(limits.seconds);
     const pid_t copy = fork();
     if (copy == 0) {
         close(ends[0]);
-        workAndEnd(work, limits, inUse, ends[1]);
+        workAndEnd(work, limits, original, ends[1]);
     }
     close(ends[1]);
-    std::string wrong;
+    Spoken spoken;
     int status = 0;
     if (copy > 0) {
-        wrong = readAll(ends[0], copy, progress);
+        spoken = readAll(ends[0], copy, latest, progress);
         while (waitpid(copy, &status, 0) < 0 && errno == EINTR) {
         }
     }
     close(ends[0]);
     progress.throwIfInterrupted();
-    if (!WIFSIGNALED(status)) return wrong;
+    if (!WIFSIGNALED(status)) return spoken.words;
     const int signal = WTERMSIG(status);
+    if (signal == SIGKILL && !spoken.isTooLate) {
+        // Nobody but the system does that, which has no other way to get memory back.
+        throw Error(ErrorKind::Memory,
+                    "the system ended a process of this program that read a "
+                    "file, probably for want of memory");
+    }
     if (signal == SIGXCPU || signal == SIGKILL) {
         return "took more than " + std::to_string(limits.seconds) + " seconds";
     }

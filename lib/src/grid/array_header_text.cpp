@@ -1,6 +1,7 @@
 #include "grid/array_header_text.h"
 
 #include <bandvox/core/error.h>
+#include <bandvox/source/world_space.h>
 
 #include <algorithm>
 #include <array>
@@ -50,7 +51,6 @@ const char* wordFor(VoxelType type, const TypeWords& words, const char* format) 
                                       "; expected another type, or a .npy file");
 }
 
-// Space names of NRRD have three words; MetaImage has three letters.
 bool isNrrdSpace(const std::string& space) {
     for (const char* known :
          {"right-anterior-superior", "left-anterior-superior", "left-posterior-superior", "RAS",
@@ -64,10 +64,6 @@ bool canBeQuoted(const std::string& unit) {
     return !unit.empty() && std::none_of(unit.begin(), unit.end(), [](unsigned char c) {
         return c < ' ' || c == '"' || c == '\\';
     });
-}
-
-bool isOrientationCode(const std::string& space) {
-    return space.size() == 3 && space.find_first_not_of("RLAPSI") == std::string::npos;
 }
 
 }  // namespace
@@ -125,18 +121,20 @@ std::string metaImageHeader(const ArrayHeaderRequest& request) {
     std::string text = "ObjectType = Image\nNDims = 3\nBinaryData = True\n";
     text += std::string("BinaryDataByteOrderMSB = ") + (kIsBig ? "True" : "False");
     text += std::string("\nCompressedData = ") + (request.compressed ? "True" : "False");
+    // Whoever reads these files takes a scan's world for left-posterior-superior.
+    const auto turn = spaceToSpace(request.place.space, "LPS");
+    const openvdb::Mat4d toWorld = turn ? request.toWorld * *turn : request.toWorld;
     openvdb::Vec3d spacing;
     std::string directions;
     for (int axis = 0; axis < 3; ++axis) {
-        const openvdb::Vec3d step = rowOf(request.toWorld, axis);
+        const openvdb::Vec3d step = rowOf(toWorld, axis);
         spacing[axis] = step.length();
         directions += " " + threeTexts(step / spacing[axis], " ");
     }
     text += "\nTransformMatrix =" + directions;
-    text += "\nOffset = " + threeTexts(rowOf(request.toWorld, 3), " ");
+    text += "\nOffset = " + threeTexts(rowOf(toWorld, 3), " ");
     text += "\nCenterOfRotation = 0 0 0";
-    const std::string& space = request.place.space;
-    if (isOrientationCode(space)) text += "\nAnatomicalOrientation = " + space;
+    if (turn) text += "\nAnatomicalOrientation = " + axesFrom(toWorld);
     text += "\nElementSpacing = " + threeTexts(spacing, " ");
     text += "\nDimSize = " + sizeText(request.size, " ");
     text += std::string("\nElementType = ") + wordFor(request.type, kWords, "MetaImage");

@@ -145,6 +145,38 @@ double chooseBallLattice(const Balls& balls, double voxelSize) {
     return voxel;
 }
 
+/// The union of level sets that come one after another. Two of as many are united at a time, so
+/// that none is gone through more often than the logarithm of their number.
+class GrowingUnion {
+  public:
+    void add(openvdb::FloatGrid::Ptr grid) {
+        std::size_t size = 0;
+        for (; size < mParts.size() && mParts[size]; ++size) grid = united(mParts[size], grid);
+        if (size == mParts.size()) mParts.emplace_back();
+        mParts[size] = std::move(grid);
+    }
+
+    /// All of them, and nothing is left; null if there was none.
+    openvdb::FloatGrid::Ptr finish() {
+        openvdb::FloatGrid::Ptr all;
+        for (openvdb::FloatGrid::Ptr& part : mParts) {
+            if (part) all = all ? united(part, all) : std::move(part);
+            part.reset();
+        }
+        return all;
+    }
+
+  private:
+    static openvdb::FloatGrid::Ptr united(openvdb::FloatGrid::Ptr& into,
+                                          openvdb::FloatGrid::Ptr& other) {
+        openvdb::tools::csgUnion(*into, *other, /*prune=*/true);
+        other.reset();
+        return std::move(into);
+    }
+
+    std::vector<openvdb::FloatGrid::Ptr> mParts;  // of 2^i grids, or none
+};
+
 void requireNear(const Balls& balls, double voxel) {
     const openvdb::BBoxd box = balls.bounds();
     const Vec3d low = openvdb::math::Abs(box.min());
@@ -215,14 +247,17 @@ BallGrid ballsToSolidGrid(const Balls& balls, double voxelSize, Progress& progre
     if (drawn.size() > 0) drawing.rasterizeSpheres(drawn);
     progress.throwIfInterrupted();
     drawing.finalize(/*prune=*/true);
+    GrowingUnion large;
     for (const std::uint32_t i : shells) {
         progress.throwIfInterrupted();
-        auto shell = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(
+        large.add(openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(
             static_cast<float>(DrawnBalls::enlarged(balls.radii[i], voxel)),
             openvdb::Vec3f(balls.centers[i] - origin), static_cast<float>(voxel),
-            static_cast<float>(kBallBand));
-        openvdb::tools::csgUnion(*result.grid, *shell, /*prune=*/true);
+            static_cast<float>(kBallBand)));
         progress.advance();
+    }
+    if (const auto all = large.finish()) {
+        openvdb::tools::csgUnion(*result.grid, *all, /*prune=*/true);
     }
     result.grid->transform().postTranslate(origin);
     result.grid->setName("balls");

@@ -1,5 +1,7 @@
 #include "mesh/byte_output.h"
 
+#include "mesh/mesh_checksum.h"
+
 #include <bandvox/core/error.h>
 
 #include <cerrno>
@@ -25,6 +27,7 @@ void ByteOutput::fail() const {
 
 void ByteOutput::flush() {
     mProgress.throwIfInterrupted();
+    mChecksum = checksumOf(mBuffer, mChecksum);
     errno = 0;
     mStream.write(mBuffer.data(), static_cast<std::streamsize>(mBuffer.size()));
     if (!mStream) fail();

@@ -52,6 +52,9 @@ class ByteOutput {
     /// Writes what is left, and closes the file. Throws as put.
     void close();
 
+    /// CRC-32 of all that was written so far; of the whole file once it is closed.
+    std::uint32_t checksum() const { return mChecksum; }
+
   private:
     static constexpr std::size_t kBufferBytes = 1 << 20;
 
@@ -62,6 +65,7 @@ class ByteOutput {
     Progress& mProgress;
     std::ofstream mStream;
     std::string mBuffer;
+    std::uint32_t mChecksum = 0;
 };
 
 /// Turns bytes into base 64 on their way, as RFC 4648 has it.

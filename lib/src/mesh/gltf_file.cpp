@@ -99,7 +99,7 @@ std::pair<std::string, std::string> GltfText::make(const std::string& uri) {
     addView(kVectorBytes * triangles, kOfIndices);
 
     std::string head = std::string(R"({"asset":{"version":"2.0","generator":"Bandvox )") +
-                       version() + '"' + gltfNotes(mMesh.surface.notes) +
+                       version() + '"' + gltfNotes(mMesh.notes) +
                        R"(},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0)";
     if (mMesh.needsDouble) head += R"(,"translation":)" + exactText(origin);
     head += R"(}],"meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1)";

@@ -50,7 +50,7 @@ void putNumbers(ByteOutput& output, const Vector& vector) {
 void writePly(ByteOutput& output, const WritableMesh& mesh) {
     const std::string number = mesh.needsDouble ? "double" : "float";
     std::string head = "ply\nformat binary_little_endian 1.0\ncomment " + signature();
-    for (const std::string& note : mesh.surface.notes) head += kPlyNote + note;
+    for (const std::string& note : mesh.notes) head += kPlyNote + note;
     head += "\nelement vertex " + std::to_string(mesh.surface.mesh.points.size()) + "\n";
     for (const char* name : {"x", "y", "z"})
         head.append("property ").append(number).append(" ").append(name).append("\n");
@@ -86,7 +86,7 @@ void writePly(ByteOutput& output, const WritableMesh& mesh) {
 
 void writeObj(ByteOutput& output, const WritableMesh& mesh) {
     output.put("# " + signature());
-    for (const std::string& note : mesh.surface.notes) output.put(kObjNote + note);
+    for (const std::string& note : mesh.notes) output.put(kObjNote + note);
     output.put('\n');
     for (std::size_t i = 0; i < mesh.surface.mesh.points.size(); ++i) {
         output.put('v');

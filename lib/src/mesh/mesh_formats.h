@@ -6,6 +6,9 @@
 
 #include <openvdb/math/BBox.h>
 
+#include <string>
+#include <vector>
+
 namespace bandvox {
 
 /// A mesh that is fit to be written.
@@ -13,6 +16,7 @@ struct WritableMesh {
     const SurfaceMesh& surface;
     openvdb::BBoxd box;        ///< of the points, world units
     bool needsDouble = false;  ///< single precision would be coarse for where the mesh is
+    std::vector<std::string> notes = {};
 
     bool hasColors() const { return !surface.colors.empty(); }
 };

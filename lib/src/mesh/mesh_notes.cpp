@@ -1,5 +1,7 @@
 #include "mesh/mesh_notes.h"
 
+#include "mesh/mesh_checksum.h"
+
 #include <bandvox/mesh/write_mesh.h>
 
 #include <fstream>
@@ -16,14 +18,6 @@ constexpr std::string_view kGltfStart = R"(,"extras":{"notes":[)";
 constexpr std::string_view kGltfAsset = R"({"asset":{"version":"2.0","generator":"Bandvox )";
 constexpr std::size_t kGlbHeads = 20;        // before the text
 constexpr std::size_t kLongestVersion = 40;  // after the generator's name
-
-std::string readHead(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::string head(kLongestHead, '\0');
-    file.read(head.data(), static_cast<std::streamsize>(head.size()));
-    head.resize(static_cast<std::size_t>(file.gcount()));
-    return head;
-}
 
 // Notes that follow each other in lines of their own.
 std::vector<std::string> noteLines(std::string_view head, const std::string& mark) {
@@ -58,7 +52,30 @@ std::vector<std::string> noteTexts(std::string_view list) {
     return notes;
 }
 
+// All notes of a file, the checksum with them.
+std::vector<std::string> allNotes(const std::filesystem::path& path) {
+    if (!holdsNotes(path)) return {};
+    const std::string head = headOfMeshFile(path);
+    if (head.starts_with("ply\n")) {
+        return noteLines(std::string_view(head).substr(0, head.find("\nend_header\n")), kPlyNote);
+    }
+    if (head.starts_with("# Bandvox ")) return noteLines(head, kObjNote);
+    const std::size_t asset = head.find(kGltfAsset);
+    const std::size_t start = asset > kGlbHeads ? std::string::npos : head.find(kGltfStart, asset);
+    if (start == std::string::npos || start > asset + kGltfAsset.size() + kLongestVersion)
+        return {};
+    return noteTexts(std::string_view(head).substr(start + kGltfStart.size()));
+}
+
 }  // namespace
+
+std::string headOfMeshFile(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string head(kLongestHead, '\0');
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(file.gcount()));
+    return head;
+}
 
 std::string gltfNotes(const std::vector<std::string>& notes) {
     if (notes.empty()) return {};
@@ -76,17 +93,9 @@ std::string gltfNotes(const std::vector<std::string>& notes) {
 }
 
 std::vector<std::string> readMeshNotes(const std::filesystem::path& path) {
-    if (!holdsNotes(path)) return {};
-    const std::string head = readHead(path);
-    if (head.starts_with("ply\n")) {
-        return noteLines(std::string_view(head).substr(0, head.find("\nend_header\n")), kPlyNote);
-    }
-    if (head.starts_with("# Bandvox ")) return noteLines(head, kObjNote);
-    const std::size_t asset = head.find(kGltfAsset);
-    const std::size_t start = asset > kGlbHeads ? std::string::npos : head.find(kGltfStart, asset);
-    if (start == std::string::npos || start > asset + kGltfAsset.size() + kLongestVersion)
-        return {};
-    return noteTexts(std::string_view(head).substr(start + kGltfStart.size()));
+    std::vector<std::string> notes = allNotes(path);
+    if (!notes.empty() && notes.back().starts_with(kChecksumMark)) notes.pop_back();
+    return notes;
 }
 
 }  // namespace bandvox

@@ -1,4 +1,5 @@
 #include "core/words.h"
+#include "mesh/mesh_checksum.h"
 #include "mesh/mesh_formats.h"
 #include "source/mesh_bounds.h"
 
@@ -118,7 +119,10 @@ void writeMesh(AtomicFile& file, const SurfaceMesh& surface, Progress& progress)
     // At this part of its size the neighbours of a fine mesh begin to fall together.
     constexpr double kWorthDouble = 1e-6;
     constexpr double kTooCoarse = 1e-4;
-    WritableMesh mesh{surface, boundsOf(surface.mesh), false};
+    WritableMesh mesh{surface, boundsOf(surface.mesh), false, surface.notes};
+    // What goes straight to its target cannot be gone back in.
+    const bool isChecked = !mesh.notes.empty() && format->holdsNotes && !file.inPlace();
+    if (isChecked) mesh.notes.push_back(kChecksumMark + kUnknownChecksum);
     const double coarse = coarseness(mesh.box);
     mesh.needsDouble = coarse > kWorthDouble;
     if (coarse > kTooCoarse && format->write == writeStl) {
@@ -130,6 +134,7 @@ void writeMesh(AtomicFile& file, const SurfaceMesh& surface, Progress& progress)
     ByteOutput output(file, progress);
     format->write(output, mesh);
     output.close();
+    if (isChecked) storeChecksum(file.temporary(), output.checksum());
 }
 
 void writeMesh(const std::filesystem::path& path, const SurfaceMesh& surface) {

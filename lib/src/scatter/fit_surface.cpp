@@ -179,7 +179,11 @@ void Fitting::solveColumns(const NetSolver& solver, const NetPoints& points, con
 }
 
 NetSolver Fitting::makeSolver(const NetPoints& points, double stiffness) const {
-    return NetSolver(makeNormalStencil(points, mUnit.side, mFit.tension, stiffness));
+    NetStencil stencil = makeNormalStencil(points, mUnit.side, mFit.tension, stiffness);
+    constexpr std::size_t kManyForEach = 10;
+    const bool isHeld = points.size() > kManyForEach * stencil.count();
+    return isHeld ? NetSolver(std::move(stencil), NetSolver::kSmallEnough)
+                  : NetSolver(std::move(stencil));
 }
 
 /// The smoothest surface near the values.

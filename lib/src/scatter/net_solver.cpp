@@ -25,10 +25,9 @@ void scaleAndAdd(std::span<double> y, double factor, std::span<const double> x) 
 
 }  // namespace
 
-NetSolver::NetSolver(NetStencil stencil) {
+NetSolver::NetSolver(NetStencil stencil, std::size_t largestFactored) {
     // The coarsest may be larger than what pays if it cannot be coarsened.
-    constexpr std::size_t kSmallEnough = 3000;
-    const bool isFactored = stencil.count() <= kLargestFactored;
+    const bool isFactored = stencil.count() <= std::max(largestFactored, kSmallEnough);
     mLevels.push_back(std::move(stencil));
     while (!isFactored && mLevels.back().canCoarsen() && mLevels.back().count() > kSmallEnough) {
         mLevels.push_back(mLevels.back().coarsened());

@@ -18,7 +18,12 @@ class NetSolver {
     /// The largest net that is factored, control points.
     static constexpr std::size_t kLargestFactored = 28000;
 
-    explicit NetSolver(NetStencil stencil);
+    /// The largest net that always is.
+    static constexpr std::size_t kSmallEnough = 3000;
+
+    /// Nets that many points hold everywhere are solved sooner by steps than by factors: see
+    /// kSmallEnough.
+    explicit NetSolver(NetStencil stencil, std::size_t largestFactored = kLargestFactored);
 
     const NetStencil& stencil() const { return mLevels.front(); }
 

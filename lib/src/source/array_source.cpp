@@ -6,6 +6,7 @@
 
 #include <bandvox/core/error.h>
 #include <bandvox/source/array_source.h>
+#include <bandvox/source/world_space.h>
 
 #include <zlib.h>
 
@@ -236,6 +237,25 @@ void checkSides(const fs::path& path, const openvdb::Mat4d& toWorld) {
     }
 }
 
+// Of values that are stored as they are, how many bytes of the files are none of them.
+void noteBytesBehind(ArrayHeader& header) {
+    if (header.encoding != ArrayHeader::Encoding::Raw || header.skipLines > 0) return;
+    if (header.skipBytes < 0) return;
+    const openvdb::Coord& size = header.info.size;
+    std::int64_t left = -std::int64_t(size[0]) * size[1] * size[2] *
+                        static_cast<std::int64_t>(bytesOf(header.type));
+    for (const fs::path& file : header.files) {
+        std::error_code error;
+        const std::uintmax_t bytes = fs::file_size(file, error);
+        if (error) return;
+        left += static_cast<std::int64_t>(bytes) - header.skipBytes;
+    }
+    if (left <= 0) return;
+    header.info.notes.push_back(std::to_string(left) +
+                                " bytes follow the values that its header tells of, and are not "
+                                "read");
+}
+
 }  // namespace
 
 bool isArrayFile(const fs::path& path) {
@@ -264,6 +284,18 @@ void ArraySource::place(const std::optional<openvdb::Vec3d>& spacing,
     mInfo.hasTransform = mInfo.hasTransform || spacing.has_value();
 }
 
+void ArraySource::turnTo(const std::string& space) {
+    const auto turn = spaceToSpace(mInfo.space, space);
+    if (!turn) {
+        std::string message = mInfo.name + ": it cannot be brought to the space " + space + ": ";
+        message += mInfo.space.empty() ? "it does not say where its axes point"
+                                       : "its own is '" + mInfo.space + "'";
+        throw Error(ErrorKind::Usage, message);
+    }
+    mInfo.toWorld *= *turn;
+    mInfo.space = worldSpaceName(space);
+}
+
 std::unique_ptr<ArraySource> openArray(const fs::path& path, const ArrayReadOptions& options) {
     const std::string extension = lowerExtension(path);
     std::error_code ignored;
@@ -287,6 +319,7 @@ std::unique_ptr<ArraySource> openArray(const fs::path& path, const ArrayReadOpti
     header.info.name = path.string();
     header.info.valueType = nameOf(header.type);
     checkSides(path, header.info.toWorld);
+    noteBytesBehind(header);
     return std::make_unique<FileArray>(std::move(header));
 }
 

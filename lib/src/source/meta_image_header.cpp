@@ -1,5 +1,7 @@
 #include "source/array_header.h"
 
+#include <bandvox/source/world_space.h>
+
 #include <algorithm>
 #include <cctype>
 #include <map>
@@ -59,6 +61,10 @@ std::string metaField(const MetaFields& fields, const std::vector<std::string>& 
         if (found != fields.end()) return found->second;
     }
     return "";
+}
+
+bool isOrientationCode(const std::string& text) {
+    return text.size() == 3 && text.find_first_not_of("RLAPSI") == std::string::npos;
 }
 
 bool isTrue(const std::string& text) {
@@ -132,7 +138,10 @@ ArrayHeader readMetaImageHeader(const std::filesystem::path& path, std::istream&
         arraySize(path, numbersIn(path, metaField(fields, {"DimSize"}), 3, "DimSize"));
     header.info.axes = {0, 1, 2};
     header.info.toWorld = metaTransform(path, fields, header.info.hasTransform);
-    header.info.space = metaField(fields, {"AnatomicalOrientation"});
+    // What it says is where the array's axes come from; the world of scans is always the same.
+    if (isOrientationCode(metaField(fields, {"AnatomicalOrientation"}))) {
+        header.info.space = worldSpaceName("LPS");
+    }
     header.bigEndian = isTrue(metaField(fields, {"BinaryDataByteOrderMSB", "ElementByteOrderMSB"}));
     if (metaField(fields, {"BinaryData"}).starts_with("F")) {
         header.encoding = ArrayHeader::Encoding::Text;

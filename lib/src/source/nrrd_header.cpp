@@ -1,9 +1,13 @@
 #include "source/array_header.h"
 
+#include <bandvox/source/world_space.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -152,24 +156,65 @@ std::vector<std::string> patternFiles(const std::filesystem::path& path, const s
     return files;
 }
 
+// Numbers of which each may be "nan", which is not known.
+std::vector<double> numbersOfAxes(const std::filesystem::path& path, const Fields& fields,
+                                  const std::string& name, const std::string& other = "") {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    const std::string text = fieldOf(fields, name, other);
+    std::vector<double> numbers;
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+        const bool isUnknown = lower(word) == "nan" || lower(word) == "-nan";
+        numbers.push_back(isUnknown ? kUnknown : numbersIn(path, word, 1, name).front());
+    }
+    if (text.empty()) return std::vector<double>(3, kUnknown);
+    if (numbers.size() == 3) return numbers;
+    failArray(path, "its " + name + " are '" + text.substr(0, 100) + "'; expected 3 numbers");
+}
+
+// Spacings, and the ends of axes. Ends are those of cells unless it says that they are nodes.
+openvdb::Mat4d transformOfAxes(const std::filesystem::path& path, const Fields& fields,
+                               const openvdb::Coord& size, bool& hasTransform) {
+    const auto spacings = numbersOfAxes(path, fields, "spacings");
+    const auto mins = numbersOfAxes(path, fields, "axis mins", "axismins");
+    const auto maxs = numbersOfAxes(path, fields, "axis maxs", "axismaxs");
+    std::istringstream words(lower(fieldOf(fields, "centerings", "centers")));
+    openvdb::Mat4d matrix = openvdb::Mat4d::identity();
+    hasTransform = false;
+    for (int axis = 0; axis < 3; ++axis) {
+        std::string centering;
+        words >> centering;
+        const bool isOfNodes = centering == "node";
+        const int steps = isOfNodes ? size[axis] - 1 : size[axis];
+        double step = spacings[axis];
+        if (std::isnan(step) && steps > 0) step = (maxs[axis] - mins[axis]) / steps;
+        const bool hasStep = !std::isnan(step);
+        if (hasStep) matrix(axis, axis) = step;
+        if (!std::isnan(mins[axis])) {
+            matrix(3, axis) = mins[axis] + (isOfNodes || !hasStep ? 0 : step / 2);
+        }
+        hasTransform = hasTransform || hasStep || !std::isnan(mins[axis]);
+    }
+    return matrix;
+}
+
 openvdb::Mat4d nrrdTransform(const std::filesystem::path& path, const Fields& fields,
-                             bool& hasTransform) {
+                             const openvdb::Coord& size, bool& hasTransform) {
     openvdb::Mat4d matrix = openvdb::Mat4d::identity();
     const std::string directions = fieldOf(fields, "space directions");
     const std::string origin = fieldOf(fields, "space origin");
-    const std::string spacings = fieldOf(fields, "spacings");
     if (!directions.empty()) {
         const std::vector<double> steps = numbersIn(path, directions, 9, "space directions");
         for (int i = 0; i < 9; ++i) matrix(i / 3, i % 3) = steps[i];
-    } else if (!spacings.empty() && lower(spacings).find("nan") == std::string::npos) {
-        const std::vector<double> steps = numbersIn(path, spacings, 3, "spacings");
-        for (int i = 0; i < 3; ++i) matrix(i, i) = steps[i];
+        hasTransform = true;
+    } else {
+        matrix = transformOfAxes(path, fields, size, hasTransform);
     }
     if (!origin.empty()) {
         const std::vector<double> place = numbersIn(path, origin, 3, "space origin");
         for (int i = 0; i < 3; ++i) matrix(3, i) = place[i];
+        hasTransform = true;
     }
-    hasTransform = !directions.empty() || !spacings.empty() || !origin.empty();
     return matrix;
 }
 
@@ -216,8 +261,8 @@ ArrayHeader readNrrdHeader(const std::filesystem::path& path, std::istream& stre
     header.bigEndian = lower(fieldOf(fields, "endian")) == "big";
     header.info.size = arraySize(path, numbersIn(path, fieldOf(fields, "sizes"), 3, "sizes"));
     header.info.axes = {0, 1, 2};
-    header.info.toWorld = nrrdTransform(path, fields, header.info.hasTransform);
-    header.info.space = fieldOf(fields, "space");
+    header.info.toWorld = nrrdTransform(path, fields, header.info.size, header.info.hasTransform);
+    header.info.space = worldSpaceName(fieldOf(fields, "space"));
     header.info.unit = nrrdUnit(fieldOf(fields, "space units", "units"));
     const auto skip = [&](const char* name, const char* other) {
         const std::string text = fieldOf(fields, name, other);

@@ -27,6 +27,10 @@ bool holdsNotes(const std::filesystem::path& path);
 /// cannot be read.
 std::vector<std::string> readMeshNotes(const std::filesystem::path& path);
 
+/// True if a file with notes is as writeMesh has left it, byte for byte, by the checksum that it
+/// stores with them; false of files without. Throws Error(ErrorKind::Interrupted).
+bool isAsWritten(const std::filesystem::path& path, Progress& progress = silentProgress());
+
 /// Writes a mesh as the extension of the file's target says; the caller commits it. Written in one
 /// go from start to end.
 ///

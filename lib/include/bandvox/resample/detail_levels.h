@@ -20,6 +20,12 @@ std::vector<openvdb::FloatGrid::Ptr> makeDetailLevels(const openvdb::FloatGrid::
                                                       const ResampleOptions& options = {},
                                                       Progress& progress = silentProgress());
 
+/// The same of vectors, as colours, each level by resampleVectors.
+std::vector<openvdb::Vec3SGrid::Ptr> makeDetailLevels(const openvdb::Vec3SGrid::ConstPtr& grid,
+                                                      int levels,
+                                                      const ResampleOptions& options = {},
+                                                      Progress& progress = silentProgress());
+
 /// Says of a grid that it is level `level` of detail of `finest`: by its name, NAME_level_l, and
 /// the metadata MultiResGrid_Level.
 void nameDetailLevel(openvdb::GridBase& grid, const openvdb::GridBase& finest, int level);

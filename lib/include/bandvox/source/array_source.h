@@ -24,8 +24,8 @@ struct ArrayInfo {
     openvdb::Mat4d toWorld;     ///< from a voxel's index to its centre, acting on rows; world units
     bool hasTransform = false;  ///< the file says where its voxels lie
     std::string unit;           ///< of the world, as "mm"; empty if that is not known
-    std::string space;          ///< the axes of the world in the file's words, as
-                                ///< "left-posterior-superior"; empty if it does not say
+    std::string space;          ///< the axes of the world, as "left-posterior-superior"; empty
+                                ///< if it does not say
     std::vector<std::string> notes;  ///< what else a user should know, a sentence each
 
     std::int64_t valuesPerSlice() const { return std::int64_t(size[axes[0]]) * size[axes[1]]; }
@@ -45,6 +45,10 @@ class ArraySource {
     /// Throws Error(ErrorKind::Usage) for spacings that are not above 0.
     void place(const std::optional<openvdb::Vec3d>& spacing,
                const std::optional<openvdb::Vec3d>& origin);
+
+    /// Brings the array to another space of scans, "LPS", "RAS" or "LAS". Throws
+    /// Error(ErrorKind::Usage) if it does not say that it is in one.
+    void turnTo(const std::string& space);
 
     /// Reads the next slices, as many as `values` has room for, a whole number. Values as floats:
     /// whole numbers beyond 2²⁴ and doubles are rounded. Throws Error(ErrorKind::Input) if the file
