@@ -26,6 +26,9 @@ void runVoxelize(const CommandLine& line);
 const CommandTable& renderTable();
 void runRender(const CommandLine& line);
 
+const CommandTable& outlineTable();
+void runOutline(const CommandLine& line);
+
 const CommandTable& infoTable();
 void runInfo(const CommandLine& line);
 
@@ -40,10 +43,10 @@ void runView(const CommandLine& line);
 
 /// All commands, in the order in which the help lists them.
 inline const std::vector<Command>& commands() {
-    static const std::vector<Command> all{{convertTable, runConvert}, {voxelizeTable, runVoxelize},
-                                          {fitTable, runFit},         {renderTable, runRender},
-                                          {infoTable, runInfo},       {compareTable, runCompare},
-                                          {mergeTable, runMerge},     {viewTable, runView}};
+    static const std::vector<Command> all{
+        {convertTable, runConvert}, {voxelizeTable, runVoxelize}, {fitTable, runFit},
+        {renderTable, runRender},   {outlineTable, runOutline},   {infoTable, runInfo},
+        {compareTable, runCompare}, {mergeTable, runMerge},       {viewTable, runView}};
     return all;
 }
 

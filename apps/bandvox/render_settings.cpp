@@ -28,6 +28,19 @@ std::string inWords(const openvdb::Vec3d& v) {
     return formatNumber(v.x()) + "," + formatNumber(v.y()) + "," + formatNumber(v.z());
 }
 
+TransportOptions readTransport(const OptionValues& values) {
+    TransportOptions transport;
+    transport.shadows = values.has("shadows");
+    transport.gather = values.wholeNumber("gather", 0, kMostSamples, transport.gather);
+    transport.gatherDistance =
+        values.number("gather-distance", {.low = 0}, transport.gatherDistance);
+    transport.bounces = values.wholeNumber("bounces", 0, kMostBounces, transport.bounces);
+    transport.depth = values.wholeNumber("depth", 0, kMostBounces, transport.depth);
+    return transport;
+}
+
+}  // namespace
+
 CameraOptions readCamera(const OptionValues& values, double aspect) {
     CameraOptions camera;
     if (const auto file = values.text("camera-file")) camera = readGltfCamera(*file, aspect);
@@ -54,26 +67,37 @@ CameraOptions readCamera(const OptionValues& values, double aspect) {
     return camera;
 }
 
-TransportOptions readTransport(const OptionValues& values) {
-    TransportOptions transport;
-    transport.shadows = values.has("shadows");
-    transport.gather = values.wholeNumber("gather", 0, kMostSamples, transport.gather);
-    transport.gatherDistance =
-        values.number("gather-distance", {.low = 0}, transport.gatherDistance);
-    transport.bounces = values.wholeNumber("bounces", 0, kMostBounces, transport.bounces);
-    transport.depth = values.wholeNumber("depth", 0, kMostBounces, transport.depth);
-    return transport;
+std::vector<OptionEntry> cameraEntries() {
+    const CameraOptions camera;
+    const std::string view = "Camera";
+    return {
+        {"camera", 0, "KIND", "perspective", "perspective or orthographic.", view},
+        {"camera-file", 0, "FILE", "",
+         "A .gltf or .glb file with a camera; FILE:NAME takes the one of that name, else it is the "
+         "first. The options below change it.",
+         view},
+        {"eye", 0, "X,Y,Z", "chosen", "Where the camera is, world.", view},
+        {"lookat", 0, "X,Y,Z", "the middle", "What it looks at, world.", view},
+        {"up", 0, "X,Y,Z", "0,1,0, or z along y", "What is up in the picture.", view},
+        {"from", 0, "X,Y,Z", inWords(camera.from),
+         "Direction from the object to the camera, if --eye is not given.", view},
+        {"focal", 0, "MM", formatNumber(camera.focal), "Focal length in mm (perspective).", view},
+        {"aperture", 0, "MM", formatNumber(camera.aperture),
+         "Width of the film in mm (perspective).", view},
+        {"fov", 0, "DEG", "as focal and aperture",
+         "Angle of view from left to right, instead of "
+         "--focal.",
+         view},
+        {"frame", 0, "W", "fits",
+         "Width of the view in world units (orthographic); 0 fits the objects.", view},
+    };
 }
-
-}  // namespace
 
 std::vector<OptionEntry> pictureEntries() {
     const PictureOptions options;
-    const CameraOptions& camera = options.camera;
     const std::string picture = "Picture";
-    const std::string view = "Camera";
     const std::string light = "How far light is followed";
-    return {
+    std::vector<OptionEntry> entries{
         {"res", 0, "WxH", std::to_string(options.width) + "x" + std::to_string(options.height),
          "Width and height, pixels.", picture},
         {"samples", 0, "N", std::to_string(options.samples), "Lines of sight per pixel.", picture},
@@ -100,25 +124,9 @@ std::vector<OptionEntry> pictureEntries() {
          "gradient "
          "relative to a flat face's.",
          picture},
-        {"camera", 0, "KIND", "perspective", "perspective or orthographic.", view},
-        {"camera-file", 0, "FILE", "",
-         "A .gltf or .glb file with a camera; FILE:NAME takes the one of that name, else it is the "
-         "first. The options below change it.",
-         view},
-        {"eye", 0, "X,Y,Z", "chosen", "Where the camera is, world.", view},
-        {"lookat", 0, "X,Y,Z", "the middle", "What it looks at, world.", view},
-        {"up", 0, "X,Y,Z", "0,1,0, or z along y", "What is up in the picture.", view},
-        {"from", 0, "X,Y,Z", inWords(camera.from),
-         "Direction from the object to the camera, if --eye is not given.", view},
-        {"focal", 0, "MM", formatNumber(camera.focal), "Focal length in mm (perspective).", view},
-        {"aperture", 0, "MM", formatNumber(camera.aperture),
-         "Width of the film in mm (perspective).", view},
-        {"fov", 0, "DEG", "as focal and aperture",
-         "Angle of view from left to right, instead of "
-         "--focal.",
-         view},
-        {"frame", 0, "W", "fits",
-         "Width of the view in world units (orthographic); 0 fits the objects.", view},
+    };
+    for (const OptionEntry& entry : cameraEntries()) entries.push_back(entry);
+    const std::vector<OptionEntry> ofLight{
         {"shadows", 0, "", "", "Let objects stop the light of lamps.", light},
         {"gather", 0, "N", std::to_string(options.transport.gather),
          "Directions per line of sight in which a matt surface looks for light from around, which "
@@ -136,6 +144,8 @@ std::vector<OptionEntry> pictureEntries() {
          light},
         {"step", 0, "V", formatNumber(options.volumes.step), "Voxels to a step in volumes.", light},
     };
+    entries.insert(entries.end(), ofLight.begin(), ofLight.end());
+    return entries;
 }
 
 PictureOptions readPictureOptions(const OptionValues& values) {

@@ -13,7 +13,14 @@ namespace bandvox::app {
 /// The options of `render` that are about the picture and the camera, not about what is seen.
 std::vector<OptionEntry> pictureEntries();
 
-/// Reads them. Throws Error(ErrorKind::Usage), and Error(ErrorKind::Input) for a file with a camera
+/// Those of them that are about the camera.
+std::vector<OptionEntry> cameraEntries();
+
+/// Reads those. `aspect`: height of the picture over its width, for what a file with a camera says.
+/// Throws as readPictureOptions does.
+CameraOptions readCamera(const OptionValues& values, double aspect);
+
+/// Reads all. Throws Error(ErrorKind::Usage), and Error(ErrorKind::Input) for a file with a camera
 /// that cannot be used.
 PictureOptions readPictureOptions(const OptionValues& values);
 

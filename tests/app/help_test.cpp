@@ -30,8 +30,8 @@ TEST(Help, ListsTheCommands) {
     const RunResult bare = runBandvox({});
     EXPECT_EQ(bare.status, 0);
     EXPECT_EQ(bare.err, "");
-    for (const char* word : {"convert", "voxelize", "fit", "render", "info", "compare", "merge",
-                             "view", "Exit status", "130"}) {
+    for (const char* word : {"convert", "voxelize", "fit", "render", "outline", "info", "compare",
+                             "merge", "view", "Exit status", "130"}) {
         EXPECT_NE(bare.out.find(word), std::string::npos) << word;
     }
     for (const Arguments& arguments : {Arguments{"--help"}, {"-h"}, {"help"}}) {
@@ -43,7 +43,7 @@ TEST(Help, ListsTheCommands) {
 
 TEST(Help, ExplainsEveryCommand) {
     for (const std::string command :
-         {"convert", "voxelize", "fit", "render", "info", "compare", "merge", "view"}) {
+         {"convert", "voxelize", "fit", "render", "outline", "info", "compare", "merge", "view"}) {
         const RunResult result = runBandvox({"help", command});
         EXPECT_EQ(result.status, 0);
         EXPECT_EQ(result.err, "");
@@ -62,7 +62,7 @@ TEST(Help, ExplainsEveryCommand) {
 
 TEST(Help, FitsATerminal) {
     for (const std::string command :
-         {"convert", "voxelize", "fit", "render", "info", "compare", "merge", "view"}) {
+         {"convert", "voxelize", "fit", "render", "outline", "info", "compare", "merge", "view"}) {
         std::istringstream lines(runBandvox({"help", command}).out);
         for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
     }

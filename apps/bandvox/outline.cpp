@@ -1,0 +1,224 @@
+// bandvox outline: free-form surfaces as a drawing of lines.
+
+#include "command_run.h"
+#include "commands.h"
+#include "render_settings.h"
+#include "report_words.h"
+#include "words.h"
+
+#include <bandvox/outline/patches_to_outline.h>
+#include <bandvox/outline/write_outline.h>
+#include <bandvox/source/read_patches.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace bandvox::app {
+
+const CommandTable& outlineTable() {
+    static const CommandTable table = [] {
+        const OutlineOptions options;
+        const StrokeOptions stroke;
+        const std::string page = "Page", lines = "Lines";
+        CommandTable made{
+            "outline",
+            "Draw free-form surfaces as lines (.svg, .pdf, .eps).",
+            "Draws the contours, boundaries, creases and intersections of Bézier and B-spline "
+            "surfaces as Bézier curves. They are computed on the surfaces, never on polygons, and "
+            "what is hidden is found by lines of sight to the surfaces. Visible and hidden lines "
+            "are layers of the drawing.",
+            {{"SURFACES",
+              "Newell's .bpt, or .obj with free-form surfaces (cstype bezier or bspline); several "
+              "files are one scene.",
+              true}},
+            {
+                {"output", 'o', "FILE", "", "The .svg, .pdf or .eps file to write. Needed.", page},
+                {"page", 0, "SIZE",
+                 formatNumber(options.width) + "x" + formatNumber(options.height),
+                 "WxH in millimetres, or A3, A4, A5, letter, upright, or with -landscape.", page},
+                {"margin", 0, "MM", formatNumber(options.margin),
+                 "What stays free around the drawing.", page},
+                {"tolerance", 0, "MM", formatNumber(options.tolerance),
+                 "How far lines may be from the true ones.", lines},
+                {"crease-angle", 0, "DEG", formatNumber(options.creaseAngle),
+                 "Patches that meet at more than this are drawn with a line between, 0 to 180.",
+                 lines},
+                {"kinds", 0, "LIST", "contour,boundary,crease,intersection", "Which to draw.",
+                 lines},
+                {"no-hidden", 0, "", "", "Leave hidden lines away.", lines},
+                {"stroke", 0, "MM", formatNumber(stroke.width), "Width of visible lines.", lines},
+                {"stroke-color", 0, "COLOR", stroke.color,
+                 "Their colour, as in CSS; #rrggbb in .pdf and .eps.", lines},
+                {"hidden-stroke", 0, "MM", formatNumber(stroke.hiddenWidth),
+                 "Width of hidden lines.", lines},
+                {"hidden-color", 0, "COLOR", stroke.hiddenColor, "Their colour.", lines},
+                {"dash", 0, "LENGTHS", stroke.dash,
+                 "Lengths of dashes and gaps of hidden lines, mm.", lines},
+            },
+            {
+                {"bandvox outline teapot.bpt -o teapot.svg --up 0,0,1 --from 1,-2,1",
+                 "Newell's teapot, hidden lines dashed."},
+                {"bandvox outline hull.obj -o hull.svg --page A4-landscape --camera orthographic",
+                 "A parallel view on a page for a printer."},
+            }};
+        for (const OptionEntry& entry : cameraEntries()) made.options.push_back(entry);
+        return made;
+    }();
+    return table;
+}
+
+namespace {
+
+const std::vector<std::string> kOutlineKinds{"contour", "boundary", "crease", "intersection"};
+constexpr Range kSomeLength{.low = 0, .high = 1e5, .lowOpen = true};
+
+struct OutlineRequest {
+    std::vector<std::string> inputs;
+    std::string output;
+    OutlineOptions options;
+    StrokeOptions stroke;
+    std::vector<bool> kinds;
+};
+
+void readPage(const CommandLine& line, OutlineOptions& options) {
+    const auto text = line.text("page");
+    if (!text) return;
+    const std::map<std::string, std::array<double, 2>> sizes{
+        {"a3", {297, 420}}, {"a4", {210, 297}}, {"a5", {148, 210}}, {"letter", {215.9, 279.4}}};
+    std::string name = lowerCase(*text);
+    const std::string turned = "-landscape";
+    const bool isTurned = name.ends_with(turned);
+    if (isTurned) name.resize(name.size() - turned.size());
+    std::array<double, 2> size{};
+    if (const auto found = sizes.find(name); found != sizes.end()) {
+        size = found->second;
+        if (isTurned) std::swap(size[0], size[1]);
+    } else {
+        const char* const end = name.data() + name.size();
+        const auto width = std::from_chars(name.data(), end, size[0]);
+        bool isSize = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x' && !isTurned;
+        if (isSize) {
+            const auto height = std::from_chars(width.ptr + 1, end, size[1]);
+            isSize = height.ec == std::errc() && height.ptr == end;
+        }
+        if (!isSize || !kSomeLength.contains(size[0]) || !kSomeLength.contains(size[1])) {
+            line.fail("page",
+                      "WxH in mm, A3, A4, A5 or letter, the last four also with -landscape");
+        }
+    }
+    options.width = size[0];
+    options.height = size[1];
+}
+
+// Colours and lengths go into a style sheet, and must not end it.
+std::string readStyle(const CommandLine& line, const std::string& option, std::string fallback) {
+    const auto text = line.text(option);
+    if (!text) return fallback;
+    const bool isPlain = !text->empty() && std::all_of(text->begin(), text->end(), [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+               std::string("#(),.% -").find(c) != std::string::npos;
+    });
+    if (!isPlain) line.fail(option, "a value as in CSS: letters, digits and #(),.%-");
+    return *text;
+}
+
+OutlineRequest parseOutline(const CommandLine& line) {
+    OutlineRequest request;
+    request.inputs = line.positionals();
+    request.output = line.requiredText("output");
+    requireExtension(request.output, {".svg", ".pdf", ".eps"});
+    OutlineOptions& options = request.options;
+    readPage(line, options);
+    const double shorter = std::min(options.width, options.height);
+    options.margin = line.number("margin", {.low = 0, .high = 0.5 * shorter, .highOpen = true},
+                                 std::min(options.margin, 0.05 * shorter));
+    options.tolerance = line.number("tolerance", kSomeLength, options.tolerance);
+    options.creaseAngle = line.number("crease-angle", {.low = 0, .high = 180}, options.creaseAngle);
+    options.camera = readCamera(
+        line, (options.height - 2 * options.margin) / (options.width - 2 * options.margin));
+    request.kinds = line.choices("kinds", kOutlineKinds);
+    options.hidden = !line.has("no-hidden");
+    request.stroke.width = line.number("stroke", kSomeLength, request.stroke.width);
+    request.stroke.hiddenWidth =
+        line.number("hidden-stroke", kSomeLength, request.stroke.hiddenWidth);
+    request.stroke.color = readStyle(line, "stroke-color", request.stroke.color);
+    request.stroke.hiddenColor = readStyle(line, "hidden-color", request.stroke.hiddenColor);
+    request.stroke.dash = readStyle(line, "dash", request.stroke.dash);
+    return request;
+}
+
+PatchModel readModels(CommandRun& run, const OutlineRequest& request) {
+    PatchModel all;
+    for (const std::string& input : request.inputs) {
+        PatchModel model = readPatches(input, run.progress());
+        run.say("read     " + input + ": " +
+                formatCount(static_cast<std::int64_t>(model.patches.size()), "patch", "patches"));
+        run.warn(model.warnings, ErrorKind::Input);
+        const int shift = static_cast<int>(all.objects.size());
+        for (BezierPatch& patch : model.patches) {
+            patch.object += shift;
+            all.patches.push_back(std::move(patch));
+        }
+        all.objects.insert(all.objects.end(), model.objects.begin(), model.objects.end());
+    }
+    return all;
+}
+
+void sayOutline(CommandRun& run, const Outline& outline) {
+    std::int64_t anchors = 0, visible = 0, visibleAnchors = 0;
+    for (const OutlinePath& path : outline.paths) {
+        anchors += static_cast<std::int64_t>(path.anchors());
+        if (path.hidden > 0) continue;
+        ++visible;
+        visibleAnchors += static_cast<std::int64_t>(path.anchors());
+    }
+    const auto paths = static_cast<std::int64_t>(outline.paths.size());
+    run.say("drawn    " + formatCount(paths, "path", "paths") + " with " +
+            formatCount(anchors, "anchor", "anchors") + ", " +
+            formatCount(visible, "path", "paths") + " with " +
+            formatCount(visibleAnchors, "anchor", "anchors") + " of them seen");
+    run.count("paths", paths);
+    run.count("anchors", anchors);
+    run.count("visible_paths", visible);
+    run.count("visible_anchors", visibleAnchors);
+}
+
+}  // namespace
+
+void runOutline(const CommandLine& line) {
+    const OutlineRequest request = parseOutline(line);
+    CommandRun run(line);
+    AtomicFile output(request.output);
+    const PatchModel model = readModels(run, request);
+    Outline outline;
+    {
+        const ProgressStage stage(run.progress(), "drawing", 0);
+        outline = patchesToOutline(model, request.options, run.progress());
+    }
+    std::erase_if(outline.paths, [&](const OutlinePath& path) {
+        return !request.kinds[static_cast<std::size_t>(path.kind)];
+    });
+    if (outline.paths.empty()) {
+        throw Error(ErrorKind::Result,
+                    "the drawing is empty: it has no lines of these --kinds; expected some");
+    }
+    sayOutline(run, outline);
+    run.writeOutput(output, [&](AtomicFile& file) {
+        const std::string extension = extensionOf(request.output);
+        const auto write = extension == ".pdf"   ? writePdf
+                           : extension == ".eps" ? writeEps
+                                                 : writeSvg;
+        write(file, outline, request.stroke);
+    });
+}
+
+}  // namespace bandvox::app

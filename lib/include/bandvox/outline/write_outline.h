@@ -1,0 +1,37 @@
+#pragma once
+
+#include <bandvox/core/atomic_file.h>
+#include <bandvox/outline/outline.h>
+
+#include <string>
+
+namespace bandvox {
+
+/// How lines look in a file.
+struct StrokeOptions {
+    double width = 0.35;            ///< of visible lines, page units; > 0
+    double hiddenWidth = 0.18;      ///< of hidden ones
+    std::string color = "#000000";  ///< as CSS has it
+    std::string hiddenColor = "#808080";
+    std::string dash = "1.2 0.8";  ///< of hidden lines, lengths of line and gap, page units
+};
+
+/// Writes a drawing as SVG: width and height in millimetres, with a matching viewBox. Each object
+/// is a group of layers, one for each kind of line that it has, visible and hidden ones apart, with
+/// a class for style sheets; ids do not depend on anything but the drawing. Lines are paths of
+/// cubic curves, and nothing is clipped.
+///
+/// Throws Error(ErrorKind::Runtime) if it cannot be written.
+void writeSvg(AtomicFile& file, const Outline& outline, const StrokeOptions& options = {});
+
+/// Writes a drawing as PDF 1.7, a page unit a millimetre, with a layer (optional content) for each
+/// object and kind of line, visible and hidden ones apart. Colours are "#rgb" or "#rrggbb".
+///
+/// Throws Error(ErrorKind::Usage) for other colours, and for dashes that are no lengths,
+/// Error(ErrorKind::Runtime) if it cannot be written.
+void writePdf(AtomicFile& file, const Outline& outline, const StrokeOptions& options = {});
+
+/// The same as Encapsulated PostScript, which has no layers.
+void writeEps(AtomicFile& file, const Outline& outline, const StrokeOptions& options = {});
+
+}  // namespace bandvox

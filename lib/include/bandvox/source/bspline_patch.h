@@ -1,0 +1,28 @@
+#pragma once
+
+#include <bandvox/source/bezier_patch.h>
+
+#include <array>
+#include <vector>
+
+namespace bandvox {
+
+/// A tensor-product B-spline surface, rational or not, over any knots.
+struct BsplineNet {
+    std::array<int, 2> degree{3, 3};  ///< along u and v, 1 to BezierPatch::kHighestDegree
+    std::array<int, 2> count{0, 0};   ///< of control points along u and v, above the degree
+    /// count + degree + 1 along u and v, not descending.
+    std::array<std::vector<double>, 2> knots;
+    /// (w x, w y, w z, w), [u][v], world units; w > 0.
+    std::vector<std::array<double, 4>> control;
+    /// The part of the knots' range that counts, along u and v, cut to where the splines make up
+    /// a surface; all of that if the first number is not below the second.
+    std::array<std::array<double, 2>, 2> range{};
+};
+
+/// The Bézier patches of a B-spline surface, one for each rectangle of its knots, which are the
+/// surface exactly, but for rounding (L. Ramshaw, "Blossoming: a connect-the-dots approach to
+/// splines", 1987). Throws Error(ErrorKind::Usage) if counts or knots are not as above.
+std::vector<BezierPatch> bezierPatches(const BsplineNet& net);
+
+}  // namespace bandvox

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <bandvox/outline/outline.h>
+
+#include <array>
+#include <vector>
+
+namespace bandvox {
+
+/// What keeps a curve's points on it between two known ones.
+enum class CurveRule {
+    Fold,    ///< F = 0 on the patch
+    Border,  ///< a straight line of the patch's parameters
+    Meeting  ///< in two patches
+};
+
+/// A point of a curve on patches, where the view sees it.
+struct CurvePoint {
+    double x = 0, y = 0, z = 0;  ///< on the page, and depth
+    double tx = 1, ty = 0;       ///< direction of the curve on the page, length 1, without a sign
+    int patch = -1;              ///< on which it lies, at (u, v)
+    double u = 0, v = 0;
+    int other = -1;  ///< the other patch of an intersection, at (s, t)
+    double s = 0, t = 0;
+    CurveRule rule = CurveRule::Fold;
+    bool corner = false;  ///< the curve turns sharply or back: at a cusp, at a kink
+};
+
+/// A curve as a chain of exact points, dense enough to be straight between them. Two that follow
+/// each other are on the same patches by the same rule, or in the same place.
+struct Curve {
+    OutlineKind kind = OutlineKind::Contour;
+    bool closed = false;  ///< the last point is the first one again
+    int object = 0;
+    std::vector<CurvePoint> points;
+};
+
+/// How densely curves are sampled.
+struct CurveSampling {
+    double flatness = 1e-3;  ///< largest distance from the chord, page units
+    double size = 1;         ///< of the page
+};
+
+}  // namespace bandvox

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "outline/curve.h"
+#include "outline/view_patch.h"
+
+#include <span>
+
+namespace bandvox {
+
+/// The exact point of a curve between two that follow each other, at a share of the way, 0 to 1.
+CurvePoint pointBetween(std::span<const ViewPatch> patches, const CurvePoint& a,
+                        const CurvePoint& b, double share);
+
+/// Puts a point of an intersection, (u, v) and (s, t) of two patches, where both are in the same
+/// place, as near as possible to where it was; one on a side of its patch stays there.
+/// False if that fails.
+bool meet(std::span<const ViewPatch> patches, CurvePoint& point);
+
+}  // namespace bandvox

@@ -1,0 +1,207 @@
+#include "outline/visible_pieces.h"
+
+#include "outline/crossings.h"
+#include "outline/refine_point.h"
+
+#include <bandvox/core/parallel.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace bandvox {
+namespace {
+
+// A surface in front has to be nearer by this part of the page's size, since the curve's own
+// surface is met there, too, twice where it folds.
+constexpr double kDepthMargin = 3e-5;
+
+/// A curve by its length.
+class CurveRuler {
+  public:
+    explicit CurveRuler(const Curve& curve) : mLengths{0} {
+        const auto& p = curve.points;
+        for (std::size_t i = 1; i < p.size(); ++i) {
+            mLengths.push_back(mLengths.back() +
+                               std::hypot(p[i].x - p[i - 1].x, p[i].y - p[i - 1].y));
+        }
+    }
+    double whole() const { return mLengths.back(); }
+
+    double lengthAt(double place) const {
+        const auto [i, share] = parts(place);
+        return mLengths[i] + share * (mLengths[i + 1] - mLengths[i]);
+    }
+    double placeAt(double length) const {
+        const auto above = std::upper_bound(mLengths.begin() + 1, mLengths.end() - 1, length);
+        const auto i = static_cast<std::size_t>(above - mLengths.begin()) - 1;
+        const double step = mLengths[i + 1] - mLengths[i];
+        const double share = step > 0 ? std::clamp((length - mLengths[i]) / step, 0.0, 1.0) : 0;
+        return static_cast<double>(i) + share;
+    }
+    std::pair<std::size_t, double> parts(double place) const {
+        const auto i = std::min(static_cast<std::size_t>(place), mLengths.size() - 2);
+        return {i, place - static_cast<double>(i)};
+    }
+
+  private:
+    std::vector<double> mLengths;
+};
+
+/// Finds out how much is in front of one curve.
+class CurveSight {
+  public:
+    CurveSight(const Curve& curve, std::span<const ViewPatch> patches, const Sheets& sheets,
+               const CurveSampling& sampling)
+        : mCurve(curve), mPatches(patches), mSheets(sheets), mSampling(sampling), mRuler(curve) {}
+
+    std::vector<VisiblePiece> cut(const CurvePlaces& places) {
+        std::vector<double> stops{0, mRuler.whole()};
+        for (const double place : places) stops.push_back(mRuler.lengthAt(place));
+        for (std::size_t i = 0; i < mCurve.points.size(); ++i) {
+            if (mCurve.points[i].corner) stops.push_back(mRuler.lengthAt(static_cast<double>(i)));
+        }
+        std::sort(stops.begin(), stops.end());
+        const double least = 1e-2 * mSampling.flatness;
+        for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+            if (stops[i + 1] - stops[i] > least) examine(stops[i], stops[i + 1]);
+        }
+        return pieces();
+    }
+
+  private:
+    struct Run {
+        double from, to;
+        int hidden;
+    };
+
+    CurvePoint pointAt(double length) const {
+        const auto [i, share] = mRuler.parts(mRuler.placeAt(length));
+        constexpr double kOnPoint = 1e-9;  // of the way
+        if (share < kOnPoint) return mCurve.points[i];
+        if (share > 1 - kOnPoint) return mCurve.points[i + 1];
+        return pointBetween(mPatches, mCurve.points[i], mCurve.points[i + 1], share);
+    }
+
+    int hiddenAt(double length) const {
+        const CurvePoint p = pointAt(length);
+        return mSheets.countBefore(p.x, p.y, p.z - kDepthMargin * mSampling.size);
+    }
+
+    void examine(double from, double to) {
+        const double span = to - from;
+        std::vector<double> where{from + 0.2 * span, from + 0.5 * span, from + 0.8 * span};
+        // Long parts are looked at more often.
+        const int more = std::min(40, static_cast<int>(span / (0.02 * mSampling.size)));
+        for (int k = 1; k <= more; ++k) where.push_back(from + span * k / (more + 1));
+        // Changes that were not foreseen mostly are near the ends.
+        for (const double away : {1e-3, 4e-3, 1.2e-2}) {
+            const double inward = away * mSampling.size;
+            if (inward > 0.2 * span) break;
+            where.push_back(from + inward);
+            where.push_back(to - inward);
+        }
+        std::sort(where.begin(), where.end());
+        double begin = from;
+        int hidden = hiddenAt(where[0]);
+        for (std::size_t k = 1; k < where.size(); ++k) {
+            const int next = hiddenAt(where[k]);
+            if (next == hidden) continue;
+            const double change = changeBetween(where[k - 1], where[k], hidden);
+            add({begin, change, hidden});
+            begin = change;
+            hidden = next;
+        }
+        add({begin, to, hidden});
+    }
+
+    double changeBetween(double low, double high, int hiddenLow) const {
+        while (high - low > 0.1 * mSampling.flatness) {
+            const double middle = 0.5 * (low + high);
+            (hiddenAt(middle) == hiddenLow ? low : high) = middle;
+        }
+        return 0.5 * (low + high);
+    }
+
+    void add(const Run& run) {
+        if (!mRuns.empty() && mRuns.back().hidden == run.hidden) {
+            mRuns.back().to = run.to;
+        } else {
+            mRuns.push_back(run);
+        }
+    }
+
+    // Puts runs that are shorter than anyone can see to what is beside them.
+    void dropCrumbs() {
+        const double least = mSampling.flatness;
+        std::vector<Run> kept;
+        for (const Run& run : mRuns) {
+            const bool isCrumb = run.to - run.from < least && mRuns.size() > 1;
+            if (!kept.empty() && (isCrumb || kept.back().hidden == run.hidden)) {
+                kept.back().to = run.to;
+            } else {
+                kept.push_back(run);
+            }
+        }
+        mRuns = std::move(kept);
+    }
+
+    std::vector<VisiblePiece> pieces() {
+        std::vector<VisiblePiece> result;
+        dropCrumbs();
+        if (mRuns.empty()) return result;
+        mRuns.front().from = 0;
+        mRuns.back().to = mRuler.whole();
+        if (mRuns.size() == 1) {
+            result.push_back({mCurve, mRuns[0].hidden});
+            return result;
+        }
+        for (const Run& run : mRuns) result.push_back({part(run), run.hidden});
+        if (mCurve.closed && mRuns.front().hidden == mRuns.back().hidden) {
+            auto& points = result.back().curve.points;
+            const auto& more = result.front().curve.points;
+            points.insert(points.end(), more.begin(), more.end());
+            result.front() = std::move(result.back());
+            result.pop_back();
+        }
+        return result;
+    }
+
+    Curve part(const Run& run) const {
+        Curve part{.kind = mCurve.kind, .object = mCurve.object};
+        const auto begin = mRuler.parts(mRuler.placeAt(run.from)).first + 1;
+        const auto end = mRuler.parts(mRuler.placeAt(run.to)).first;
+        part.points.push_back(run.from == 0 ? mCurve.points.front() : pointAt(run.from));
+        for (std::size_t i = begin; i <= end; ++i) part.points.push_back(mCurve.points[i]);
+        part.points.push_back(run.to == mRuler.whole() ? mCurve.points.back() : pointAt(run.to));
+        return part;
+    }
+
+    const Curve& mCurve;
+    std::span<const ViewPatch> mPatches;
+    const Sheets& mSheets;
+    const CurveSampling& mSampling;
+    CurveRuler mRuler;
+    std::vector<Run> mRuns;
+};
+
+}  // namespace
+
+std::vector<VisiblePiece> visiblePieces(std::span<const Curve> curves,
+                                        std::span<const ViewPatch> patches, const Sheets& sheets,
+                                        const CurveSampling& sampling, Progress& progress) {
+    const std::vector<CurvePlaces> places = crossings(curves, patches, sampling);
+    std::vector<std::vector<VisiblePiece>> parts(curves.size());
+    parallelFor(static_cast<std::int64_t>(curves.size()), [&](std::int64_t i) {
+        progress.throwIfInterrupted();
+        const auto k = static_cast<std::size_t>(i);
+        parts[k] = CurveSight(curves[k], patches, sheets, sampling).cut(places[k]);
+    });
+    std::vector<VisiblePiece> result;
+    for (auto& some : parts) {
+        for (VisiblePiece& piece : some) result.push_back(std::move(piece));
+    }
+    return result;
+}
+
+}  // namespace bandvox

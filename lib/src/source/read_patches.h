@@ -1,0 +1,13 @@
+#pragma once
+
+#include "source/file_integrity.h"
+
+#include <bandvox/core/progress.h>
+#include <bandvox/source/bezier_patch.h>
+
+namespace bandvox {
+
+PatchModel readBptPatches(const FileContents& file, Progress& progress);
+PatchModel readObjPatches(const FileContents& file, Progress& progress);
+
+}  // namespace bandvox

@@ -1,0 +1,208 @@
+// What the outline command draws, and which files it refuses.
+
+#include "run_command.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace bandvox::app_test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+const std::string kTeapotFile =
+    (std::filesystem::path(BANDVOX_SOURCE_DIR) / "examples" / "data" / "teapot.bpt").string();
+
+const std::string kFlatPatch = "1\n1 1\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
+
+// A quarter of a cylinder, rational, of degrees 2 and 1.
+const std::string kCylinder =
+    "v 1 0 0\nv 1 1 0 0.7071067811865476\nv 0 1 0\nv 1 0 2\nv 1 1 2 0.7071067811865476\nv 0 1 2\n"
+    "cstype rat bezier\ndeg 2 1\nsurf 0 1 0 1 1 2 3 4 5 6\nparm u 0 1\nparm v 0 1\nend\n";
+
+std::size_t occurrences(const std::string& text, const std::string& word) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+        ++count;
+    }
+    return count;
+}
+
+TEST(Outline, DrawsTheTeapotWithFewAnchors) {
+    const TemporaryFolder folder;
+    const RunResult result =
+        runBandvox({"outline", kTeapotFile, "-o", "teapot.svg", "--up", "0,0,1", "--from", "1,-2,1",
+                    "--tolerance", "0.01", "--stats", "stats.json"},
+                   {.folder = folder.path()});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const auto stats = nlohmann::json::parse(readText(folder / "stats.json"));
+    EXPECT_LE(stats["counts"]["visible_anchors"], 200);
+    EXPECT_GE(stats["counts"]["visible_paths"], 10);
+    const std::string svg = readText(folder / "teapot.svg");
+    for (const char* word :
+         {"width=\"200mm\" height=\"150mm\" viewBox=\"0 0 200 150\"", "inkscape:label=\"teapot\"",
+          "id=\"visible-contour-1\"", "class=\"hidden intersection\"", "stroke-dasharray: 1.2 0.8",
+          "inkscape:groupmode=\"layer\"", "id=\"visible-boundary-1\""}) {
+        EXPECT_NE(svg.find(word), std::string::npos) << word;
+    }
+    EXPECT_EQ(svg.find("clip"), std::string::npos);
+    EXPECT_EQ(occurrences(svg, "<g "), occurrences(svg, "</g>"));
+    // The same again, byte by byte, whatever the number of threads.
+    ASSERT_EQ(runBandvox({"outline", kTeapotFile, "-o", "again.svg", "--up", "0,0,1", "--from",
+                          "1,-2,1", "--threads", "1"},
+                         {.folder = folder.path()})
+                  .status,
+              0);
+    EXPECT_EQ(readText(folder / "again.svg"), svg);
+}
+
+TEST(Outline, HasPagesAndKinds) {
+    const TemporaryFolder folder;
+    const auto outline = [&](Names more) {
+        more.insert(more.begin(), {"outline", kTeapotFile, "-o", "out.svg", "--up", "0,0,1"});
+        return runBandvox(more, {.folder = folder.path()});
+    };
+    ASSERT_EQ(outline({"--page", "A4-landscape", "--no-hidden", "--kinds", "contour", "--stroke",
+                       "0.5", "--stroke-color", "rgb(1, 2, 3)"})
+                  .status,
+              0);
+    const std::string svg = readText(folder / "out.svg");
+    EXPECT_NE(svg.find("width=\"297mm\" height=\"210mm\""), std::string::npos);
+    EXPECT_NE(svg.find("stroke: rgb(1, 2, 3); stroke-width: 0.5"), std::string::npos);
+    EXPECT_EQ(svg.find("class=\"hidden"), std::string::npos);
+    EXPECT_EQ(svg.find("visible boundary"), std::string::npos);
+    for (const Names& wrong : {Names{"--page", "A9"},
+                               {"--page", "10x"},
+                               {"--page", "-3x4"},
+                               {"--tolerance", "0"},
+                               {"--kinds", "edge"},
+                               {"--stroke-color", "red;} svg {"},
+                               {"--margin", "75"},
+                               {"--eye", "0.1,0,1"}}) {
+        EXPECT_EQ(outline(wrong).status, 2) << wrong[1];
+    }
+}
+
+TEST(Outline, WritesPdfAndEps) {
+    const TemporaryFolder folder;
+    const auto outline = [&](const std::string& output, Names more) {
+        more.insert(more.begin(), {"outline", kTeapotFile, "-o", output, "--up", "0,0,1"});
+        return runBandvox(more, {.folder = folder.path()}).status;
+    };
+    ASSERT_EQ(outline("out.svg", {}), 0);
+    const std::string svg = readText(folder / "out.svg");
+    ASSERT_EQ(outline("out.pdf", {"--stroke-color", "#f00"}), 0);
+    const std::string pdf = readText(folder / "out.pdf");
+    EXPECT_EQ(occurrences(pdf, " c\n"), occurrences(svg, " C"));
+    EXPECT_EQ(occurrences(pdf, "/Type /OCG"), occurrences(svg, "class=\""));
+    EXPECT_NE(pdf.find("/MediaBox [0 0 566.9291 425.1969]"), std::string::npos);
+    EXPECT_NE(pdf.find("1 0 0 RG"), std::string::npos);
+    // Every object is where the table says, and the table where the end says.
+    const std::size_t table = std::stoul(pdf.substr(pdf.rfind("startxref\n") + 10));
+    ASSERT_EQ(pdf.compare(table, 5, "xref\n"), 0);
+    const std::size_t entries = pdf.find("65535 f \n", table) + 9;
+    for (std::size_t k = 0; k < occurrences(pdf, " 0 obj\n"); ++k) {
+        const std::size_t start = std::stoul(pdf.substr(entries + 20 * k, 10));
+        const std::string head = std::to_string(k + 1) + " 0 obj";
+        EXPECT_EQ(pdf.compare(start, head.size(), head), 0) << k;
+    }
+    ASSERT_EQ(outline("out.eps", {}), 0);
+    const std::string eps = readText(folder / "out.eps");
+    EXPECT_EQ(occurrences(eps, " curveto\n"), occurrences(svg, " C"));
+    EXPECT_NE(eps.find("%%BoundingBox: 0 0 567 426"), std::string::npos);
+    EXPECT_EQ(outline("bad.pdf", {"--stroke-color", "red"}), 2);
+    EXPECT_EQ(outline("bad.eps", {"--dash", "none"}), 2);
+}
+
+TEST(Outline, ReadsFreeFormSurfacesOfObjFiles) {
+    const TemporaryFolder folder;
+    writeText(folder / "cylinder.obj", kCylinder);
+    const RunResult result =
+        runBandvox({"outline", "cylinder.obj", "-o", "out.svg"}, {.folder = folder.path()});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(readText(folder / "out.svg").find("boundary"), std::string::npos);
+    // A uniform cubic B-spline with 4 x 4 points, turned into one patch.
+    std::ostringstream net;
+    for (int k = 0; k < 16; ++k) net << "v " << k % 4 << " " << k / 4 << " " << k % 3 << "\n";
+    net << "o first\ncstype bspline\ndeg 3 3\nsurf 3 4 3 4";
+    for (int k = 0; k < 16; ++k) net << " " << k - 16;
+    net << "\nparm u 0 1 2 3 4 5 6 7\nparm v 0 1 2 3 \\\n4 5 6 7\nend\n";
+    writeText(folder / "net.obj", net.str());
+    const RunResult both = runBandvox({"outline", "net.obj", "cylinder.obj", "-o", "out.svg"},
+                                      {.folder = folder.path()});
+    ASSERT_EQ(both.status, 0) << both.err;
+    const std::string svg = readText(folder / "out.svg");
+    EXPECT_NE(svg.find("inkscape:label=\"first\""), std::string::npos);
+    EXPECT_NE(svg.find("inkscape:label=\"cylinder\""), std::string::npos);
+}
+
+TEST(Outline, RefusesBrokenFiles) {
+    const auto replaced = [](std::string text, const std::string& from, const std::string& to) {
+        const std::size_t at = text.find(from);
+        return text.replace(at, from.size(), to);
+    };
+    struct Broken {
+        std::string name, text, words;
+        int status = 3;
+    };
+    std::string points = "1000\n";
+    for (int k = 0; k < 1000; ++k) points += "1 1\n1 2 3\n1 2 3\n1 2 3\n1 2 3\n";
+    const std::vector<Broken> all{
+        {"a.bpt", "", "the number of patches"},
+        {"a.bpt", "2\n" + kFlatPatch.substr(2), "announces 2 patches"},
+        {"a.bpt", "2\n" + kFlatPatch.substr(2) + "# " + std::string(40, 'x') + "\n",
+         "patch 2 of 2"},
+        {"a.bpt", "1\n1 1\n0.0000000 0 0\n1.0000000 0 0\n0 0", "expected points of patch 1 of 1"},
+        {"a.bpt", kFlatPatch + "7\n", "line 7 goes on"},
+        {"a.bpt", replaced(kFlatPatch, "1 1", "0 1"), "line 2 has the degree 0"},
+        {"a.bpt", replaced(kFlatPatch, "1 1", "1 99"), "line 2 has the degree 99"},
+        {"a.bpt", replaced(kFlatPatch, "0 1 0", "0 nan 0"), "line 5"},
+        {"a.bpt", replaced(kFlatPatch, "0 1 0", "0 inf 0"), "line 5"},
+        {"a.bpt", "999999999999\n1 1\n", "announces"},
+        {"a.bpt", "0\n", "empty", 4},
+        {"a.bpt", points, "empty", 4},
+        {"a.obj", kCylinder.substr(0, kCylinder.size() - 4), "ends within the surface of line 9"},
+        {"a.obj", replaced(kCylinder, "0.7071067811865476", "0"), "weight"},
+        {"a.obj", replaced(kCylinder, "0.7071067811865476", "-1"), "weight"},
+        {"a.obj", replaced(kCylinder, "deg 2 1", "deg 0 1"), "line 8 has the degree 0"},
+        {"a.obj", replaced(kCylinder, "4 5 6", "4 5"), "5 points; expected 3 x 2"},
+        {"a.obj", replaced(kCylinder, "4 5 6", "4 5 7"), "point \"7\""},
+        {"a.obj", replaced(kCylinder, "rat bezier", "cardinal"), "cardinal"},
+        {"a.obj", replaced(kCylinder, "parm u 0 1", "parm u 1 0"), "descends"},
+        {"a.obj", replaced(kCylinder, "parm u 0 1", "trim 0 1 1"), "trims"},
+        {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "only faces"},
+        {"a.obj", "surf 0 1 0 1 1 2 3 4\n", "line 1"},
+        {"a.txt", kFlatPatch, "expected .bpt or .obj"},
+    };
+    for (const Broken& broken : all) {
+        const TemporaryFolder folder;
+        writeText(folder / broken.name, broken.text);
+        const RunResult result =
+            runBandvox({"outline", broken.name, "-o", "out.svg"}, {.folder = folder.path()});
+        EXPECT_EQ(result.status, broken.status) << broken.words << ": " << result.err;
+        EXPECT_NE(result.err.find(broken.words), std::string::npos) << result.err;
+        EXPECT_EQ(folder.contents(), Names{broken.name});
+    }
+    EXPECT_EQ(runBandvox({"outline", "/nowhere.bpt", "-o", "/tmp/out.svg"}).status, 3);
+}
+
+TEST(Outline, DrawsAFlatPatchByItsBoundary) {
+    const TemporaryFolder folder;
+    writeText(folder / "flat.bpt", kFlatPatch);
+    const RunResult result = runBandvox(
+        {"outline", "flat.bpt", "-o", "out.svg", "--camera", "orthographic", "--from", "0,0,1"},
+        {.folder = folder.path()});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const std::string svg = readText(folder / "out.svg");
+    EXPECT_EQ(occurrences(svg, "<path id"), 1U);
+    EXPECT_EQ(occurrences(svg, " Z\""), 1U);
+    EXPECT_EQ(occurrences(svg, " C"), 4U);
+}
+
+}  // namespace
+}  // namespace bandvox::app_test

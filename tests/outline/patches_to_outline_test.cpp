@@ -1,0 +1,237 @@
+// Drawings of surfaces against closed forms, and their visibility against rays on triangles.
+
+#include "outline/page_view.h"
+#include "outline/sample_surfaces.h"
+#include "outline/surface_curves.h"
+
+#include <bandvox/core/error.h>
+#include <bandvox/core/parallel.h>
+#include <bandvox/outline/patches_to_outline.h>
+#include <bandvox/source/read_patches.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+namespace bandvox::outline_test {
+namespace {
+
+using Place = std::array<double, 2>;
+
+OutlineOptions parallelView(const openvdb::Vec3d& from, double frame) {
+    OutlineOptions options;
+    options.camera.projection = CameraOptions::Projection::Orthographic;
+    options.camera.from = from;
+    options.camera.frame = frame;
+    options.camera.lookat = openvdb::Vec3d(0.0);
+    options.camera.up = openvdb::Vec3d(0, 0, 1);
+    options.width = options.height = 220;
+    options.margin = 10;
+    return options;
+}
+
+Place onCubic(const OutlinePath& path, std::size_t piece, double t) {
+    const double s = 1 - t;
+    const std::array<double, 4> b{s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t};
+    Place place{};
+    for (std::size_t k = 0; k < 4; ++k) {
+        for (std::size_t c = 0; c < 2; ++c) place[c] += b[k] * path.points[3 * piece + k][c];
+    }
+    return place;
+}
+
+template <class Visit>
+void alongPath(const OutlinePath& path, int samples, Visit&& visit) {
+    for (std::size_t piece = 0; 3 * piece + 3 < path.points.size(); ++piece) {
+        for (int k = 0; k <= samples; ++k) visit(onCubic(path, piece, double(k) / samples));
+    }
+}
+
+double distance(const Place& p, const CurvePoint& a, const CurvePoint& b) {
+    const double dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy;
+    const double share =
+        square > 0 ? std::clamp(((p[0] - a.x) * dx + (p[1] - a.y) * dy) / square, 0.0, 1.0) : 0;
+    return std::hypot(a.x + share * dx - p[0], a.y + share * dy - p[1]);
+}
+
+TEST(PatchesToOutline, DrawsASphereAsACircleOfFewCubics) {
+    // 200 units of the page are 2.5 of the world.
+    const PatchModel model{sphere(1), {"sphere"}, {}};
+    constexpr double kRadius = 80;
+    for (const openvdb::Vec3d from :
+         {openvdb::Vec3d(0.3, 0.7, 0.4), openvdb::Vec3d(1, 0, 0), openvdb::Vec3d(1, 1, 1)}) {
+        OutlineOptions options = parallelView(from, 2.5);
+        options.tolerance = 0.9e-5 * kRadius;
+        const Outline outline = patchesToOutline(model, options);
+        ASSERT_EQ(outline.paths.size(), 1U) << from;
+        const OutlinePath& path = outline.paths[0];
+        EXPECT_TRUE(path.closed);
+        EXPECT_EQ(path.hidden, 0);
+        EXPECT_LE(path.anchors(), 8U);
+        double worst = 0;
+        alongPath(path, 50, [&](const Place& p) {
+            worst = std::max(worst, std::abs(std::hypot(p[0] - 110, p[1] - 110) - kRadius));
+        });
+        EXPECT_LT(worst, 1e-5 * kRadius) << from;
+    }
+}
+
+TEST(PatchesToOutline, DrawsEllipsoidsAsTheClosedFormHasThem) {
+    // x = A n with |n| = 1 is seen along d as the ellipse of |(M M^T)^-1/2 y| = 1, where M is A
+    // projected.
+    const std::array<std::array<double, 4>, 3> a{
+        {{1.1, 0.2, 0.1, 0}, {-0.3, 0.7, 0.2, 0}, {0.1, -0.1, 0.5, 0}}};
+    const PatchModel model{mapped(sphere(1), a), {"ellipsoid"}, {}};
+    for (int view = 0; view < 20; ++view) {
+        const double azimuth = 0.31 * view, elevation = 1.2 * std::sin(0.7 * view);
+        const double ca = std::cos(azimuth), sa = std::sin(azimuth);
+        const double ce = std::cos(elevation), se = std::sin(elevation);
+        OutlineOptions options = parallelView({ce * ca, ce * sa, se}, 4);
+        options.tolerance = 1e-3;
+        const Outline outline = patchesToOutline(model, options);
+        ASSERT_EQ(outline.paths.size(), 1U);
+        EXPECT_TRUE(outline.paths[0].closed);
+        const std::array<std::array<double, 3>, 2> axes{{{-sa, ca, 0}, {-se * ca, -se * sa, ce}}};
+        double mm[2][2] = {{0, 0}, {0, 0}};
+        std::array<std::array<double, 3>, 2> m{};
+        for (std::size_t r = 0; r < 2; ++r) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                for (std::size_t k = 0; k < 3; ++k) m[r][c] += axes[r][k] * a[k][c];
+            }
+        }
+        for (std::size_t r = 0; r < 2; ++r) {
+            for (std::size_t s = 0; s < 2; ++s) {
+                for (std::size_t k = 0; k < 3; ++k) mm[r][s] += m[r][k] * m[s][k];
+            }
+        }
+        const double determinant = mm[0][0] * mm[1][1] - mm[0][1] * mm[1][0];
+        alongPath(outline.paths[0], 20, [&](const Place& p) {
+            const double x = (p[0] - 110) / 50, y = -(p[1] - 110) / 50;
+            const double gx = (mm[1][1] * x - mm[0][1] * y) / determinant;
+            const double gy = (mm[0][0] * y - mm[1][0] * x) / determinant;
+            const double distance = (x * gx + y * gy - 1) / (2 * std::hypot(gx, gy));
+            EXPECT_LT(std::abs(distance) * 50, 2e-3);
+        });
+    }
+}
+
+TEST(PatchesToOutline, DoesNotDependOnTheNumberOfThreads) {
+    PatchModel model{torus(1, 0.4), {"torus"}, {}};
+    const OutlineOptions options = parallelView({1, 0.3, 0.4}, 3);
+    std::vector<Outline> results;
+    for (const int threads : {1, 3}) {
+        const ThreadLimit limit(threads);
+        results.push_back(patchesToOutline(model, options));
+    }
+    ASSERT_EQ(results[0].paths.size(), results[1].paths.size());
+    for (std::size_t k = 0; k < results[0].paths.size(); ++k) {
+        EXPECT_EQ(results[0].paths[k].points, results[1].paths[k].points);
+        EXPECT_EQ(results[0].paths[k].hidden, results[1].paths[k].hidden);
+    }
+}
+
+TEST(PatchesToOutline, KeepsToTheTrueCurvesOfTheTeapot) {
+    const PatchModel model =
+        readPatches(std::filesystem::path(BANDVOX_SOURCE_DIR) / "examples" / "data" / "teapot.bpt");
+    OutlineOptions options;
+    options.camera.up = openvdb::Vec3d(0, 0, 1);
+    for (const openvdb::Vec3d from : {openvdb::Vec3d(1, -2, 1), openvdb::Vec3d(-0.3, 1, 0.2)}) {
+        options.camera.from = from;
+        const Outline outline = patchesToOutline(model, options);
+        const ViewMatrix view = pageView(model.patches, options);
+        std::vector<ViewPatch> seen;
+        for (const BezierPatch& patch : model.patches) seen.push_back(seenBy(view, patch, 200));
+        const auto exact = surfaceCurves(model.patches, seen, options,
+                                         {.flatness = 1e-4, .size = 200}, silentProgress());
+        double worst = 0;
+        std::size_t anchors = 0;
+        for (const OutlinePath& path : outline.paths) {
+            if (path.hidden == 0) anchors += path.anchors();
+            alongPath(path, 8, [&](const Place& p) {
+                double nearest = HUGE_VAL;
+                for (const Curve& curve : exact) {
+                    if (curve.kind != path.kind) continue;
+                    for (std::size_t i = 1; i < curve.points.size(); ++i) {
+                        nearest =
+                            std::min(nearest, distance(p, curve.points[i - 1], curve.points[i]));
+                    }
+                }
+                worst = std::max(worst, nearest);
+            });
+        }
+        EXPECT_LT(worst, 1.2 * options.tolerance);
+        EXPECT_LE(anchors, 200U);
+    }
+}
+
+TEST(PatchesToOutline, FindsWhereSpheresMeet) {
+    PatchModel model{sphere(1), {"a", "b"}, {}};
+    const auto other = mapped(sphere(1), {{{1, 0, 0, 0.9}, {0, 1, 0, 0.13}, {0, 0, 1, 0.21}}});
+    for (BezierPatch patch : other) {
+        patch.object = 1;
+        model.patches.push_back(patch);
+    }
+    OutlineOptions options = parallelView({0, -1, 0}, 4);
+    const Outline outline = patchesToOutline(model, options);
+    // The circle lies in the plane between the centers.
+    double length = 0;
+    Place last{};
+    bool isFirst = true;
+    for (const OutlinePath& path : outline.paths) {
+        if (path.kind != OutlineKind::Intersection) continue;
+        isFirst = true;
+        alongPath(path, 30, [&](const Place& p) {
+            if (!isFirst) length += std::hypot(p[0] - last[0], p[1] - last[1]);
+            isFirst = false;
+            last = p;
+        });
+    }
+    // An ellipse: the radius is r = sqrt(1 - |c|^2 / 4), its short axis that times |c_y| / |c|.
+    const double c = std::sqrt(0.9 * 0.9 + 0.13 * 0.13 + 0.21 * 0.21);
+    const double a = 50 * std::sqrt(1 - c * c / 4), b = a * 0.13 / c;
+    double expected = 0;
+    constexpr int kSteps = 20000;
+    for (int k = 0; k < kSteps; ++k) {
+        const double angle = 2 * std::numbers::pi * (k + 0.5) / kSteps;
+        expected +=
+            std::hypot(a * std::sin(angle), b * std::cos(angle)) * 2 * std::numbers::pi / kSteps;
+    }
+    EXPECT_NEAR(length, expected, 0.02);
+}
+
+TEST(PatchesToOutline, RefusesWhatCannotBeDrawn) {
+    const auto kindOf = [](const PatchModel& model, const OutlineOptions& options) {
+        try {
+            patchesToOutline(model, options);
+        } catch (const Error& error) {
+            return error.exitStatus();
+        }
+        return 0;
+    };
+    const PatchModel ball{sphere(1), {"ball"}, {}};
+    OutlineOptions options = parallelView({1, 0, 0}, 4);
+    EXPECT_EQ(kindOf({}, options), 4);
+    options.tolerance = 0;
+    EXPECT_EQ(kindOf(ball, options), 2);
+    options = parallelView({1, 0, 0}, 4);
+    options.camera.projection = CameraOptions::Projection::Perspective;
+    options.camera.eye = openvdb::Vec3d(0.1, 0, 0);
+    EXPECT_EQ(kindOf(ball, options), 2);
+    PatchModel broken = ball;
+    broken.patches[0].control[4][3] = 0;
+    EXPECT_EQ(kindOf(broken, parallelView({1, 0, 0}, 4)), 3);
+}
+
+TEST(PatchesToOutline, EndsQuicklyWithAThousandPatchesOnAPoint) {
+    PatchModel model{{}, {"points"}, {}};
+    BezierPatch patch{.degreeU = 3, .degreeV = 3};
+    patch.control.assign(16, {0.1, 0.2, 0.3, 1});
+    model.patches.assign(1000, patch);
+    EXPECT_THROW(patchesToOutline(model, parallelView({1, 0.2, 0.3}, 4)), Error);
+}
+
+}  // namespace
+}  // namespace bandvox::outline_test
