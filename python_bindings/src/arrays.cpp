@@ -13,7 +13,8 @@ namespace py = pybind11;
 namespace {
 
 [[noreturn]] void refuse(const char* what, const std::string& found, const std::string& expected) {
-    throw Error(ErrorKind::Usage, std::string(what) + ": found " + found + "; expected " + expected);
+    throw Error(ErrorKind::Usage,
+                std::string(what) + ": found " + found + "; expected " + expected);
 }
 
 py::array arrayOf(const py::handle& object, const char* what, const std::string& expected) {
@@ -109,8 +110,8 @@ openvdb::Mat4d transformOf(const py::handle& object) {
     for (int i = 0; i < 4; ++i) {
         for (int j = 0; j < 4; ++j) rows(j, i) = columns(i, j);
     }
-    const bool isAffine = columns(3, 0) == 0 && columns(3, 1) == 0 && columns(3, 2) == 0 &&
-                          columns(3, 3) == 1;
+    const bool isAffine =
+        columns(3, 0) == 0 && columns(3, 1) == 0 && columns(3, 2) == 0 && columns(3, 3) == 1;
     if (!isAffine) refuse("transform", "another last row", expected);
     const double volume = rows.getMat3().det();
     if (!std::isfinite(volume) || volume == 0) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <openvdb/openvdb.h>
-
 #include <pybind11/numpy.h>
 
 #include <memory>
@@ -28,9 +27,9 @@ openvdb::Vec3d vectorOf(const pybind11::handle& object, const char* what);
 template <typename Vector>
 pybind11::array viewOf(const std::vector<Vector>& vectors, const pybind11::handle& owner) {
     using Number = typename Vector::ValueType;
-    pybind11::array_t<Number> view({static_cast<pybind11::ssize_t>(vectors.size()),
-                                    static_cast<pybind11::ssize_t>(3)},
-                                   reinterpret_cast<const Number*>(vectors.data()), owner);
+    pybind11::array_t<Number> view(
+        {static_cast<pybind11::ssize_t>(vectors.size()), static_cast<pybind11::ssize_t>(3)},
+        reinterpret_cast<const Number*>(vectors.data()), owner);
     pybind11::detail::array_proxy(view.ptr())->flags &=
         ~pybind11::detail::npy_api::NPY_ARRAY_WRITEABLE_;
     return view;
@@ -41,9 +40,8 @@ template <typename Number>
 pybind11::array ownedArray(std::vector<Number> numbers, std::vector<pybind11::ssize_t> shape) {
     auto owned = std::make_unique<std::vector<Number>>(std::move(numbers));
     const Number* data = owned->data();
-    const pybind11::capsule owner(owned.get(), [](void* pointer) {
-        delete static_cast<std::vector<Number>*>(pointer);
-    });
+    const pybind11::capsule owner(
+        owned.get(), [](void* pointer) { delete static_cast<std::vector<Number>*>(pointer); });
     owned.release();
     return pybind11::array_t<Number>(std::move(shape), data, owner);
 }

@@ -54,8 +54,8 @@ DensityResult densityOfMesh(const std::string& name, Mesh mesh, const BandlimitR
     }
     DensityResult result;
     if (closed.soup.triangles.empty()) {
-        result = surfaceToDensity(MeshSource(name, std::move(closed.mesh)), request.density,
-                                  progress);
+        result =
+            surfaceToDensity(MeshSource(name, std::move(closed.mesh)), request.density, progress);
     } else {
         SoupDensityOptions options;
         options.density = request.density;
@@ -94,10 +94,9 @@ py::object ofShape(const std::string& shape, const BandlimitRequest& request) {
 py::object ofFile(const std::filesystem::path& path, const BandlimitRequest& request) {
     return finished(inBackground(request.progress, request.threads, [&](Progress& progress) {
         MeshFile file = readMesh(path, progress);
-        DensityResult result = densityOfMesh(path.filename().string(), std::move(file.mesh),
-                                             request, progress);
-        result.warnings.insert(result.warnings.begin(), file.warnings.begin(),
-                               file.warnings.end());
+        DensityResult result =
+            densityOfMesh(path.filename().string(), std::move(file.mesh), request, progress);
+        result.warnings.insert(result.warnings.begin(), file.warnings.begin(), file.warnings.end());
         return result;
     }));
 }
@@ -185,9 +184,8 @@ void bindBandlimit(py::module_& module) {
         py::arg("voxel_size") = 0.0, py::arg("cutoff") = standard.filter.cutoff,
         py::arg("order") = standard.filter.order, py::arg("tolerance") = standard.tolerance,
         py::arg("tile") = 0, py::arg("clamp") = false, py::arg("iso") = standard.iso,
-        py::arg("route") = "auto", py::arg("overlap") = "union",
-        py::arg("oversample") = py::none(), py::arg("bounds") = py::none(), py::arg("threads") = 0,
-        py::arg("progress") = py::none(),
+        py::arg("route") = "auto", py::arg("overlap") = "union", py::arg("oversample") = py::none(),
+        py::arg("bounds") = py::none(), py::arg("threads") = 0, py::arg("progress") = py::none(),
         R"(Turns a solid into a band-limited density: 1 inside, 0 outside, and in between only what
 the grid can hold.
 

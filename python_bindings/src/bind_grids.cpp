@@ -8,7 +8,6 @@
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/tools/Dense.h>
-
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -83,7 +82,8 @@ CoordBBox boxOf(const openvdb::GridBase& grid, const py::object& bounds) {
         }
         const CoordBBox box(coordOf(two[0], "bounds"), coordOf(two[1], "bounds"));
         if (!box.empty()) return box;
-        throw Error(ErrorKind::Usage, "bounds hold no voxel; expected the first one before the last");
+        throw Error(ErrorKind::Usage,
+                    "bounds hold no voxel; expected the first one before the last");
     }
     const CoordBBox box = grid.evalActiveVoxelBoundingBox();
     if (!box.empty()) return box;
@@ -146,7 +146,8 @@ std::shared_ptr<GridObject<Grid>> fromArray(const py::array& given, const py::ob
         throw Error(ErrorKind::Usage, "voxel_size and transform exclude each other");
     }
     // C-ordered floats are taken where they lie.
-    const auto values = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(given);
+    const auto values =
+        py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(given);
     const Coord first = origin.is_none() ? Coord(0) : coordOf(origin, "origin");
     const CoordBBox box(first, first.offsetBy(static_cast<int>(values.shape(0)) - 1,
                                               static_cast<int>(values.shape(1)) - 1,
@@ -260,10 +261,10 @@ array, indexed [x, y, z]; (x, y, z)). Raises OutOfMemoryError for boxes of more 
                 return py::make_tuple(tupleOf(box.min()), tupleOf(box.max()));
             },
             "The first and the last active voxel; None if there is none.")
-        .def_property_readonly(
-            "active_voxel_count", [](const Object& self) { return self.grid->activeVoxelCount(); })
-        .def_property_readonly(
-            "memory_bytes", [](const Object& self) { return self.grid->memUsage(); })
+        .def_property_readonly("active_voxel_count",
+                               [](const Object& self) { return self.grid->activeVoxelCount(); })
+        .def_property_readonly("memory_bytes",
+                               [](const Object& self) { return self.grid->memUsage(); })
         .def(
             "copy",
             [](const Object& self) {
@@ -281,15 +282,16 @@ array, indexed [x, y, z]; (x, y, z)). Raises OutOfMemoryError for boxes of more 
         .def("__repr__",
              [name](const Object& self) {
                  const Coord size = self.grid->evalActiveVoxelBoundingBox().dim();
-                 return std::string("<bandvox.") + name + " '" + self.grid->getName() + "': " +
-                        std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
+                 return std::string("<bandvox.") + name + " '" + self.grid->getName() +
+                        "': " + std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
                         std::to_string(size[2]) + " voxels, " +
                         std::to_string(self.grid->activeVoxelCount()) + " active>";
              })
         .def(py::pickle([](const Object& self) { return bytesOf(self.grid); },
                         [](const py::bytes& bytes) {
                             auto grid = openvdb::gridPtrCast<Grid>(gridOfBytes(bytes));
-                            if (!grid) throw Error(ErrorKind::Input, "the pickle is of another grid");
+                            if (!grid)
+                                throw Error(ErrorKind::Input, "the pickle is of another grid");
                             return std::make_shared<Object>(Object{grid});
                         }));
 }

@@ -37,8 +37,8 @@ std::shared_ptr<MeshObject> meshOfArrays(const py::handle& points, const py::han
 }
 
 std::shared_ptr<MeshObject> readMeshObject(const std::filesystem::path& path) {
-    MeshFile file = inBackground(py::none(), 0,
-                                 [&](Progress& progress) { return readMesh(path, progress); });
+    MeshFile file =
+        inBackground(py::none(), 0, [&](Progress& progress) { return readMesh(path, progress); });
     warn(file.warnings);
     auto mesh = std::make_shared<MeshObject>();
     mesh->surface.mesh = std::move(file.mesh);
@@ -115,8 +115,8 @@ of points, counter-clockwise from outside. Arrays are copied.)")
         .def("write", &writeMeshObject, py::arg("path"),
              "Writes .obj, .ply, .stl, .gltf or .glb, whole or not at all.")
         .def("__repr__", [](const MeshObject& mesh) {
-            return "<bandvox.Mesh '" + mesh.name + "': " +
-                   std::to_string(mesh.surface.mesh.points.size()) + " points, " +
+            return "<bandvox.Mesh '" + mesh.name +
+                   "': " + std::to_string(mesh.surface.mesh.points.size()) + " points, " +
                    std::to_string(mesh.surface.mesh.triangles.size()) + " triangles>";
         });
 }

@@ -149,8 +149,7 @@ py::list detailLevels(const py::object& object, int levels, int threads,
 }
 
 py::object merge(const py::iterable& objects, const std::string& operation,
-                 std::vector<double> weights, bool clamp, int threads,
-                 const py::object& progress) {
+                 std::vector<double> weights, bool clamp, int threads, const py::object& progress) {
     std::vector<openvdb::FloatGrid::ConstPtr> grids;
     for (const py::handle object : objects) grids.push_back(floatGridOf(object));
     MergeOptions options;
@@ -158,9 +157,8 @@ py::object merge(const py::iterable& objects, const std::string& operation,
         operation, {"union", "sum", "max", "blend", "difference", "intersection"}, "operation"));
     options.weights = std::move(weights);
     options.clamp = clamp;
-    MergeResult result = inBackground(progress, threads, [&](Progress& watched) {
-        return mergeGrids(grids, options, watched);
-    });
+    MergeResult result = inBackground(
+        progress, threads, [&](Progress& watched) { return mergeGrids(grids, options, watched); });
     warn(result.warnings);
     return objectOf(result.grid);
 }
@@ -225,8 +223,8 @@ py::object toMesh(const py::object& object, const std::optional<double>& iso, do
     return py::cast(mesh);
 }
 
-py::object toLevelSet(const py::object& object, const std::optional<double>& iso,
-                      double halfWidth, int threads, const py::object& progress) {
+py::object toLevelSet(const py::object& object, const std::optional<double>& iso, double halfWidth,
+                      int threads, const py::object& progress) {
     const auto grid = floatGridOf(object);
     LevelSetOptions options;
     options.iso = iso;
@@ -270,8 +268,8 @@ void bindOperations(py::module_& module) {
     bindReading(module);
     const ResampleOptions resampling;
     module.def("resample", &resample, py::arg("grid"), py::kw_only(), py::arg("factor") = 0.0,
-               py::arg("voxel_size") = 0.0, py::arg("onto") = py::none(),
-               py::arg("filter") = true, py::arg("cutoff") = resampling.filter->cutoff,
+               py::arg("voxel_size") = 0.0, py::arg("onto") = py::none(), py::arg("filter") = true,
+               py::arg("cutoff") = resampling.filter->cutoff,
                py::arg("order") = resampling.filter->order,
                py::arg("tolerance") = resampling.tolerance, py::arg("threads") = 0,
                py::arg("progress") = py::none(),
@@ -296,9 +294,9 @@ maximum, rms, mean of the difference b - a; voxels; integrals. With surfaces: vo
 mean_distance (world units), angle_mean and angle_95 of the normals (degrees).)");
     const MeshOptions meshing;
     module.def("to_mesh", &toMesh, py::arg("grid"), py::kw_only(), py::arg("iso") = py::none(),
-               py::arg("adaptivity") = meshing.adaptivity,
-               py::arg("tolerance") = meshing.tolerance, py::arg("colors") = py::none(),
-               py::arg("threads") = 0, py::arg("progress") = py::none(),
+               py::arg("adaptivity") = meshing.adaptivity, py::arg("tolerance") = meshing.tolerance,
+               py::arg("colors") = py::none(), py::arg("threads") = 0,
+               py::arg("progress") = py::none(),
                "The closed surface {density = iso} as a Mesh with normals, and with colours if a "
                "VectorGrid of them is given.");
     module.def("to_level_set", &toLevelSet, py::arg("grid"), py::kw_only(),

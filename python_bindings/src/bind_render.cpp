@@ -5,8 +5,8 @@
 #include "choices.h"
 #include "grid_object.h"
 
-#include <bandvox/render/scene_to_image.h>
 #include <bandvox/render/density_to_image.h>
+#include <bandvox/render/scene_to_image.h>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -38,12 +38,13 @@ py::tuple arraysOf(Image&& image) {
 
 std::vector<float> numbersOf(const py::handle& object, const char* what, py::ssize_t height,
                              py::ssize_t width, py::ssize_t depth) {
-    const auto array = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(object);
+    const auto array =
+        py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(object);
     if (!array) throw py::error_already_set();
-    const bool fits = depth == 1 ? array.ndim() == 2 && array.shape(0) == height &&
-                                       array.shape(1) == width
-                                 : array.ndim() == 3 && array.shape(0) == height &&
-                                       array.shape(1) == width && array.shape(2) == depth;
+    const bool fits = depth == 1
+                          ? array.ndim() == 2 && array.shape(0) == height && array.shape(1) == width
+                          : array.ndim() == 3 && array.shape(0) == height &&
+                                array.shape(1) == width && array.shape(2) == depth;
     if (!fits) {
         throw Error(ErrorKind::Usage, std::string(what) + ": found " + described(array) +
                                           "; expected one of the picture's height and width");
@@ -54,8 +55,8 @@ std::vector<float> numbersOf(const py::handle& object, const char* what, py::ssi
 void writePicture(const std::filesystem::path& path, const py::array& color,
                   const py::object& channels) {
     if (color.ndim() != 3 || color.shape(2) != 4) {
-        throw Error(ErrorKind::Usage,
-                    "image: found " + described(color) + "; expected one of shape (height, width, 4)");
+        throw Error(ErrorKind::Usage, "image: found " + described(color) +
+                                          "; expected one of shape (height, width, 4)");
     }
     Image image;
     const py::ssize_t height = color.shape(0), width = color.shape(1);
@@ -74,6 +75,11 @@ void writePicture(const std::filesystem::path& path, const py::array& color,
         kept.normal = take("normal", 3, image.normal);
         kept.position = take("position", 3, image.position);
     }
+    // What is not kept has its size all the same.
+    const auto pixels = static_cast<std::size_t>(height * width);
+    if (!kept.depth) image.depth.resize(pixels);
+    if (!kept.normal) image.normal.resize(3 * pixels);
+    if (!kept.position) image.position.resize(3 * pixels);
     const py::gil_scoped_release unlocked;
     writeImage(path, image, kept);
 }
@@ -120,14 +126,15 @@ void bindRender(py::module_& module) {
             return arraysOf(std::move(result.image));
         },
         py::arg("grid"), py::arg("width"), py::arg("height"), py::arg("samples"), py::arg("eye"),
-        py::arg("lookat"), py::arg("up"), py::arg("from_"), py::arg("projection"),
-        py::arg("focal"), py::arg("aperture"), py::arg("frame"), py::arg("iso"),
-        py::arg("shading"), py::arg("light"), py::arg("color"), py::arg("ambient"),
-        py::arg("background"), py::arg("shadows"), py::arg("allow_empty"), py::arg("tolerance"),
-        py::arg("seed"), py::arg("threads"), py::arg("progress"));
-    module.def("write_image", &writePicture, py::arg("path"), py::arg("image"),
-               py::arg("channels") = py::none(),
-               R"(Writes a picture, (height, width, 4) linear R G B A, to a .png (sRGB) or an .exr file.
+        py::arg("lookat"), py::arg("up"), py::arg("from_"), py::arg("projection"), py::arg("focal"),
+        py::arg("aperture"), py::arg("frame"), py::arg("iso"), py::arg("shading"), py::arg("light"),
+        py::arg("color"), py::arg("ambient"), py::arg("background"), py::arg("shadows"),
+        py::arg("allow_empty"), py::arg("tolerance"), py::arg("seed"), py::arg("threads"),
+        py::arg("progress"));
+    module.def(
+        "write_image", &writePicture, py::arg("path"), py::arg("image"),
+        py::arg("channels") = py::none(),
+        R"(Writes a picture, (height, width, 4) linear R G B A, to a .png (sRGB) or an .exr file.
 
 channels: of an .exr, a dictionary with 'depth' (height, width), 'normal' and 'position' (height,
 width, 3).)");

@@ -39,8 +39,8 @@ void CallableField::sampleRow(const openvdb::Vec3d& start, const openvdb::Vec3d&
         }
         if (array.ndim() != 1 || array.shape(0) != count) {
             throw Error(ErrorKind::Usage, "the function gave " + described(array) +
-                                              "; expected one of shape (" +
-                                              std::to_string(count) + ",)");
+                                              "; expected one of shape (" + std::to_string(count) +
+                                              ",)");
         }
         const auto numbers = array.unchecked<1>();
         for (py::ssize_t i = 0; i < count; ++i) values[static_cast<std::size_t>(i)] = numbers(i);

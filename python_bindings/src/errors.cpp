@@ -27,20 +27,25 @@ PyObject* addException(py::module_& module, const char* name, const char* doc, P
 }
 
 PyObject* addBoth(py::module_& module, const char* name, const char* doc, PyObject* other) {
-    const py::tuple bases =
-        py::make_tuple(py::reinterpret_borrow<py::object>(sError),
-                       py::reinterpret_borrow<py::object>(other));
+    const py::tuple bases = py::make_tuple(py::reinterpret_borrow<py::object>(sError),
+                                           py::reinterpret_borrow<py::object>(other));
     return addException(module, name, doc, bases.ptr());
 }
 
 PyObject* typeOf(ErrorKind kind) {
     switch (kind) {
-        case ErrorKind::Usage: return sUsage;
-        case ErrorKind::Input: return sInput;
-        case ErrorKind::Result: return sResult;
-        case ErrorKind::Memory: return sMemory;
-        case ErrorKind::Interrupted: return PyExc_KeyboardInterrupt;
-        case ErrorKind::Runtime: break;
+        case ErrorKind::Usage:
+            return sUsage;
+        case ErrorKind::Input:
+            return sInput;
+        case ErrorKind::Result:
+            return sResult;
+        case ErrorKind::Memory:
+            return sMemory;
+        case ErrorKind::Interrupted:
+            return PyExc_KeyboardInterrupt;
+        case ErrorKind::Runtime:
+            break;
     }
     return sError;
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <openvdb/openvdb.h>
-
 #include <pybind11/pybind11.h>
 
 #include <memory>

@@ -99,7 +99,8 @@ def test_openvdb_reads_the_same(torus, tmp_path):
 def test_pickles_and_copies(torus):
     back = pickle.loads(pickle.dumps(torus))
     np.testing.assert_array_equal(back.to_array()[0], torus.to_array()[0])
-    assert back.metadata == torus.metadata
+    of_files = {name for name in back.metadata if name.startswith("file_")}
+    assert {name: back.metadata[name] for name in back.metadata.keys() - of_files} == torus.metadata
     np.testing.assert_allclose(back.transform, torus.transform)
     copy = torus.copy()
     copy.name = "other"
