@@ -1,0 +1,39 @@
+#pragma once
+
+#include <bandvox/source/field_source.h>
+
+#include <pybind11/pybind11.h>
+
+#include <atomic>
+#include <exception>
+#include <span>
+#include <string>
+
+namespace bandvox::python {
+
+/// A density given by a function of Python, f(x, y, z) of three arrays of the same length, world
+/// units. It is called from many threads, one at a time, with rows of places. To be made and
+/// destroyed with the interpreter's lock.
+class CallableField final : public FieldSource {
+  public:
+    CallableField(pybind11::object function, const openvdb::BBoxd& bounds);
+
+    std::string name() const override { return mName; }
+    openvdb::BBoxd bounds() const override { return mBounds; }
+
+    /// Throws Error(ErrorKind::Interrupted) once the function has thrown.
+    void sampleRow(const openvdb::Vec3d& start, const openvdb::Vec3d& step,
+                   std::span<float> values) const override;
+
+    /// Throws what the function threw, if it did. To be called with the lock.
+    void rethrow() const;
+
+  private:
+    pybind11::object mFunction;
+    openvdb::BBoxd mBounds;
+    std::string mName;
+    mutable std::atomic<bool> mHasFailed{false};
+    mutable std::exception_ptr mFailure;
+};
+
+}  // namespace bandvox::python
