@@ -1,10 +1,10 @@
 #include "stack_input.h"
 
+#include "command_run.h"
 #include "option_values.h"
 #include "words.h"
 
 #include <bandvox/core/error.h>
-#include <bandvox/source/read_mesh.h>
 #include <bandvox/source/shapes.h>
 
 #include <nlohmann/json.hpp>

@@ -69,7 +69,7 @@ TEST(Interrupt, SecondSignalEndsAtOnceAndLeavesNothing) {
     const TemporaryFolder folder;
     ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
     RunOptions options{.folder = folder.path()};
-    options.signalTimes = 2;
+    options.signalUntilItEnds = true;
     options.signalWhen = [&](const std::string&) {
         return folder.contents().size() > 1 ? SIGINT : 0;
     };

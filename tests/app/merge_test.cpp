@@ -200,7 +200,7 @@ TEST_F(Merge, RefusesWrongUsage) {
                 2, {"--weights", "2 numbers"});
     expectError(
         {"cube.vdb", "ball.vdb", "-o", "none.vdb", "--operation", "sum", "--weights", "1,x"}, 2,
-        {"--weights", "'x'"});
+        {"--weights", "'1,x'"});
     expectError({"stdin.vdb", "stdin.vdb", "-o", "none.vdb"}, 2, {"stdin.vdb"});
     expectError({"cube.obj", "ball.vdb", "-o", "none.vdb"}, 3, {"bandvox convert cube.obj"});
     expectError({"cube.vdb", "missing.vdb", "-o", "none.vdb"}, 3, {"missing.vdb"});

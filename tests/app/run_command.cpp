@@ -102,13 +102,11 @@ RunResult runProgram(const std::vector<std::string>& arguments, const RunOptions
     rusage usage{};
     if (options.signalWhen) {
         int signal = 0;
-        int sent = 0;
         while (wait4(child, &status, WNOHANG, &usage) == 0) {
             if (signal == 0) signal = options.signalWhen(readText(err));
-            if (signal != 0 && sent < options.signalTimes) {
+            if (signal != 0 && (!result.signalSent || options.signalUntilItEnds)) {
                 kill(child, signal);
                 result.signalSent = true;
-                ++sent;
             }
             std::this_thread::sleep_for(kPollInterval);
         }

@@ -37,9 +37,11 @@ struct RunOptions {
     std::optional<long> largestFile;            ///< bytes; writing more fails, as on a full disk
     bool heedPermissions = false;               ///< those of files, even if root runs the tests
     /// Called again and again while the program runs, with what it has said on the standard error
-    /// so far; a signal that it returns is sent, `signalTimes` times, shortly after each other.
+    /// so far; a signal that it returns is sent.
     std::function<int(const std::string& said)> signalWhen;
-    int signalTimes = 1;
+    /// Sends it again and again until the program ends: two that come before it has had the first
+    /// are one to it.
+    bool signalUntilItEnds = false;
 };
 
 /// What a program did.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <openvdb/Types.h>
 #include <openvdb/math/Mat4.h>
 
 #include <optional>
