@@ -1,6 +1,7 @@
 #include "scatter/fit_problem.h"
 
 #include "scatter/column_scale.h"
+#include "scatter/fit_limits.h"
 #include "scatter/surface_energy.h"
 
 #include <bandvox/core/error.h>
@@ -31,24 +32,9 @@ double energyOfControl(const EnergyWeights& weights, std::array<double, 2> cell)
 }  // namespace
 
 void checkFitOptions(const FitSurfaceOptions& options) {
-    const auto fail = [](const std::string& name, double found, const std::string& expected) {
-        std::string message = name + " of a fit is ";
-        message += std::to_string(found) + "; expected ";
-        message += expected;
-        throw Error(ErrorKind::Usage, message);
-    };
-    if (!(options.tolerance >= 0 && options.tolerance <= 1)) {
-        fail("the tolerance", options.tolerance, "0 to 1");
-    }
-    if (!(options.noise >= 0 && std::isfinite(options.noise))) {
-        fail("the noise", options.noise, "0 or more");
-    }
-    if (options.maxLevel && (*options.maxLevel < 1 || *options.maxLevel > 13)) {
-        fail("the finest level", *options.maxLevel, "1 to 13");
-    }
-    if (options.tension && !(*options.tension >= 0.01 && *options.tension <= 1e4)) {
-        fail("the tension", *options.tension, "0.01 to 10000");
-    }
+    constexpr int kFinest = 13;
+    checkFitLimits(
+        {"a fit", options.tolerance, options.noise, options.maxLevel, kFinest, options.tension});
 }
 
 void checkInside(const ScatteredPoints& points, const Rectangle& r) {

@@ -1,6 +1,7 @@
 #include "scatter/volume_problem.h"
 
 #include "scatter/column_scale.h"
+#include "scatter/fit_limits.h"
 
 #include <bandvox/core/error.h>
 
@@ -11,24 +12,8 @@
 namespace bandvox {
 
 void checkVolumeOptions(const FitVolumeOptions& options) {
-    const auto fail = [](const std::string& name, double found, const std::string& expected) {
-        std::string message = name + " of a volume's fit is ";
-        message += std::to_string(found) + "; expected ";
-        message += expected;
-        throw Error(ErrorKind::Usage, message);
-    };
-    if (!(options.tolerance >= 0 && options.tolerance <= 1)) {
-        fail("the tolerance", options.tolerance, "0 to 1");
-    }
-    if (!(options.noise >= 0 && std::isfinite(options.noise))) {
-        fail("the noise", options.noise, "0 or more");
-    }
-    if (options.maxLevel && (*options.maxLevel < 1 || *options.maxLevel > kFinestSpaceLevel)) {
-        fail("the finest level", *options.maxLevel, "1 to 16");
-    }
-    if (!(options.tension >= 0.01 && options.tension <= 1e4)) {
-        fail("the tension", options.tension, "0.01 to 10000");
-    }
+    checkFitLimits({"a volume's fit", options.tolerance, options.noise, options.maxLevel,
+                    kFinestSpaceLevel, options.tension});
 }
 
 SplineVolumeParts makeUnitVolume(const MergedPoints& merged, SpaceColumns& columns) {
