@@ -132,10 +132,10 @@ TEST(ReadScatteredPoints, SaysWhatIsWrongInAFile) {
     expectRefused("a.ply", plyOf("ascii", "1000000000") + "77\n1 2 3 4 5 6 7\n",
                   {"1000000000 points", "short"});
     expectRefused("a.ply", plyOf("ascii") + "77\n1 2 3 4 5 6 7\n1 2 3 4 5 six 7\n",
-                  {"line 15", "\"six\""});
+                  {"line 16", "\"six\""});
     expectRefused("a.ply", "ply\nformat ascii 1.0\nelement face 0\nend_header\n", {"no points"});
     std::string infinite = bytes;
-    infinite.replace(bytes.size() - 12, 4, bytesOf(std::numeric_limits<float>::infinity(), false));
+    infinite.replace(bytes.size() - 13, 4, bytesOf(std::numeric_limits<float>::infinity(), false));
     expectRefused("a.ply", infinite, {"point 2", "inf"});
     expectRefused("a.npy", npyOf("<f8", "False", "2, 3", std::string(40, '\0')),
                   {"2 rows of 3", "40 bytes"});

@@ -3,6 +3,7 @@
 #include "core/words.h"
 #include "source/little_endian.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <utility>
@@ -63,7 +64,12 @@ PlyVertices::PlyVertices(const FileContents& file)
         file.fail("has no points; expected one at least");
     }
     mIndex = static_cast<std::size_t>(vertex - mHeader.elements.data());
-    strideOf(file, *vertex);
+    // So that nobody makes room for what cannot be there.
+    const std::size_t stride = strideOf(file, *vertex);
+    const bool isText = mHeader.encoding == PlyEncoding::Text;
+    const std::size_t least = isText ? 2 * properties().size() : stride;
+    const std::size_t room = (file.bytes.size() - mBegin + 1) / std::max<std::size_t>(least, 1);
+    if (count() > room) failShort(room);
 }
 
 std::vector<std::string> PlyVertices::names() const {
