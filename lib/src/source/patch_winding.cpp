@@ -39,8 +39,9 @@ std::array<BezierPatch, 4> quartersOf(const BezierPatch& p) {
 
 /// Two polynomials, which are zero together where a part is met by the line through a point.
 struct LineSystem {
-    const BezierPatch& part;
+    const FreeFormPatch& surface;
     Vec3d origin;  ///< in the frame
+    const BezierPatch& part = surface.patch();
 
     /// w times the distances across and up from the line.
     std::array<double, 2> at(const Point& p) const {
@@ -91,7 +92,7 @@ struct LineSystem {
         constexpr double kLost = 1.0;
         constexpr double kStep = 1e-14;
         for (int step = 0; step < kMostSteps; ++step) {
-            const PatchJet jet = evaluate(part, u, v);
+            const PatchPoint jet = surface.at(u, v);
             const double determinant = jet.du[1] * jet.dv[2] - jet.du[2] * jet.dv[1];
             const double f = jet.position[1] - origin[1];
             const double g = jet.position[2] - origin[2];
@@ -132,33 +133,40 @@ struct LineSystem {
     }
 };
 
-int crossings(const BezierPatch& part, const Vec3d& origin, int depth) {
-    const LineSystem system{part, origin};
+int crossings(const FreeFormPatch& surface, const Vec3d& origin, int depth, bool isOneToOne) {
+    const LineSystem system{surface, origin};
     if (system.hasNoRoot()) return 0;
-    if (system.isOneToOne()) {
+    if (isOneToOne || system.isOneToOne()) {
         if (const auto found = system.crossing()) return *found;
     }
     if (depth == kRayHalvings) return 0;
     int sum = 0;
-    for (const BezierPatch& quarter : quartersOf(part)) {
-        sum += crossings(quarter, origin, depth + 1);
+    for (const BezierPatch& quarter : quartersOf(surface.patch())) {
+        sum += crossings(FreeFormPatch(quarter), origin, depth + 1, false);
     }
     return sum;
 }
 
-// Cuts a part until rays meet it once at most, or for some times if it is seen from its edge.
-void store(const BezierPatch& part, double size, int depth, std::vector<BezierPatch>& parts) {
-    const openvdb::BBoxd hull = hullOf(part);
-    const bool isSmall = hull.extents().length() <= size;
-    const LineSystem system{part, hull.getCenter()};
-    if (depth == kStoredHalvings || (isSmall && system.isOneToOne())) {
-        parts.push_back(part);
-        return;
-    }
-    for (const BezierPatch& quarter : quartersOf(part)) store(quarter, size, depth + 1, parts);
+// Without weights the map is one to one on a part whatever the ray, or not.
+bool isPolynomial(const BezierPatch& patch) {
+    return std::all_of(patch.control.begin(), patch.control.end(),
+                       [](const Point& p) { return p[3] == 1; });
 }
 
 }  // namespace
+
+// Cuts a part until rays meet it once at most, or for some times if it is seen from its edge.
+void PatchWinding::store(const BezierPatch& patch, double size, int depth) {
+    FreeFormPatch part(patch);
+    const openvdb::BBoxd hull = hullOf(patch);
+    const bool isOneToOne = LineSystem{part, hull.getCenter()}.isOneToOne();
+    const bool isSmall = hull.extents().length() <= size;
+    if (depth == kStoredHalvings || (isSmall && isOneToOne)) {
+        mParts.push_back({std::move(part), isOneToOne && isPolynomial(patch)});
+        return;
+    }
+    for (const BezierPatch& quarter : quartersOf(patch)) store(quarter, size, depth + 1);
+}
 
 PatchWinding::PatchWinding(const std::vector<const BezierPatch*>& patches,
                            const openvdb::BBoxd& bounds, double size)
@@ -169,13 +177,14 @@ PatchWinding::PatchWinding(const std::vector<const BezierPatch*>& patches,
             const Vec3d turned = inFrame({p[0], p[1], p[2]});
             p = {turned[0], turned[1], turned[2], p[3]};
         }
-        store(inRays, size, 0, mParts);
+        store(inRays, size, 0);
     }
     std::vector<openvdb::BBoxd> hulls, boxes;
-    for (const BezierPatch& part : mParts) {
-        hulls.push_back(hullOf(part));
+    for (const Part& part : mParts) {
+        const BezierPatch& patch = part.surface.patch();
+        hulls.push_back(hullOf(patch));
         openvdb::BBoxd& box = boxes.emplace_back();
-        for (const Point& p : part.control) {
+        for (const Point& p : patch.control) {
             box.expand((p[0] * kAxis + p[1] * kAcross + p[2] * kUp) / p[3]);
         }
     }
@@ -187,7 +196,9 @@ int PatchWinding::at(const Vec3d& point) const {
     if (!mBounds.isInside(point)) return 0;
     const Vec3d origin = inFrame(point);
     int sum = 0;
-    mTree->visitAlongX(origin, [&](std::uint32_t i) { sum += crossings(mParts[i], origin, 0); });
+    mTree->visitAlongX(origin, [&](std::uint32_t i) {
+        sum += crossings(mParts[i].surface, origin, 0, mParts[i].isOneToOne);
+    });
     return sum;
 }
 

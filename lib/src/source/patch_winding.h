@@ -1,6 +1,7 @@
 #pragma once
 
 #include "source/box_tree.h"
+#include "source/free_form_patch.h"
 
 #include <bandvox/source/bezier_patch.h>
 
@@ -27,8 +28,16 @@ class PatchWinding {
     bool mayMeet(const openvdb::BBoxd& box) const;
 
   private:
+    /// A part of a patch, in the frame of the ray, which runs along x.
+    struct Part {
+        FreeFormPatch surface;
+        bool isOneToOne;  ///< rays meet it once at most
+    };
+
+    void store(const BezierPatch& patch, double size, int depth);
+
     openvdb::BBoxd mBounds;
-    std::vector<BezierPatch> mParts;            ///< in the frame of the ray, which runs along x
+    std::vector<Part> mParts;
     std::unique_ptr<const BoxTree> mTree;       ///< of them
     std::unique_ptr<const BoxTree> mWorldTree;  ///< the same in the world
 };
