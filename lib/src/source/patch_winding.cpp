@@ -18,6 +18,12 @@ const Vec3d kAxis = Vec3d(0.5317, 0.2913, 0.7951).unit();
 const Vec3d kAcross = kAxis.cross(Vec3d(0.6113, -0.7717, 0.1759)).unit();
 const Vec3d kUp = kAxis.cross(kAcross);
 
+/// How far Jacobians of a part may be from their mean, times its inverse, in the 1-norm. The middle
+/// one's inverse times any other is then off from 1 by at most twice that over 1 less that, and a
+/// root half a side away along both axes is at most 1 plus that away by Newton's first step.
+constexpr double kMostTurning = 0.25;
+constexpr double kFarthestStep = 1 + 2 * kMostTurning / (1 - kMostTurning);
+
 /// Halvings of a part: before it is stored, and while a ray is followed.
 constexpr int kStoredHalvings = 6;
 constexpr int kRayHalvings = 40;
@@ -81,12 +87,12 @@ struct LineSystem {
                 std::abs(x - (parameter == 0 ? 1 : 0)) + std::abs(y - (parameter == 0 ? 0 : 1));
             farthest[parameter] = std::max(farthest[parameter], off);
         });
-        return std::max(farthest[0], farthest[1]) < 0.5;
+        return std::max(farthest[0], farthest[1]) < kMostTurning;
     }
 
     /// The crossing of the ray, with its sign, where there is one at most; nothing if Newton's
-    /// method does not find it out.
-    std::optional<int> crossing() const {
+    /// method does not find it out. `isBounded`: kFarthestStep holds.
+    std::optional<int> crossing(bool isBounded) const {
         double u = 0.5, v = 0.5;
         constexpr int kMostSteps = 30;
         constexpr double kLost = 1.0;
@@ -99,6 +105,7 @@ struct LineSystem {
             const double du = -(jet.dv[2] * f - jet.dv[1] * g) / determinant;
             const double dv = -(jet.du[1] * g - jet.du[2] * f) / determinant;
             if (!std::isfinite(du) || !std::isfinite(dv)) return {};
+            if (isBounded && step == 0 && std::abs(du) + std::abs(dv) > kFarthestStep) return 0;
             u += du;
             v += dv;
             if (std::abs(du) + std::abs(dv) < kStep || step + 1 == kMostSteps) {
@@ -137,7 +144,7 @@ int crossings(const FreeFormPatch& surface, const Vec3d& origin, int depth, bool
     const LineSystem system{surface, origin};
     if (system.hasNoRoot()) return 0;
     if (isOneToOne || system.isOneToOne()) {
-        if (const auto found = system.crossing()) return *found;
+        if (const auto found = system.crossing(isOneToOne)) return *found;
     }
     if (depth == kRayHalvings) return 0;
     int sum = 0;
