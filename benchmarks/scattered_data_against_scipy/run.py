@@ -2,7 +2,7 @@
 """How near surfaces come to functions of which they know the values at some places: bandvox fit, and
 what SciPy and multilevel B-splines make of the same points. Needs NumPy and SciPy.
 
-    run.py BANDVOX [--large]"""
+    run.py BANDVOX [--large [--json FILE]]"""
 
 import argparse
 import json
@@ -133,45 +133,64 @@ def compare_small(bandvox):
             print(f"{name} F{index + 1}: {row}; least: {least}", flush=True)
 
 
+def processor_seconds(who):
+    usage = resource.getrusage(who)
+    return usage.ru_utime + usage.ru_stime
+
+
 def compare_large(bandvox, most=7):
+    """From 1e3 places on; a row of numbers for each."""
     function = franke_functions()[0]
-    print("places, seconds of the command, seconds of Clough-Tocher, largest error on 1001 x 1001")
+    rows = []
+    print("places, seconds and processor seconds of the command, processor seconds of "
+          "Clough-Tocher, largest error on 1001 x 1001")  # fmt: skip
     for power in range(3, most + 1):
         points = np.random.RandomState(5).random_sample((10**power, 2))
         values = function(*points.T)
         table, samples = bandvox.folder / "points.npy", bandvox.folder / "samples.npy"
         statistics = bandvox.folder / "stats.json"
         np.save(table, np.column_stack([points, values]))
-        start = time.perf_counter()
+        start, before = time.perf_counter(), processor_seconds(resource.RUSAGE_CHILDREN)
         subprocess.run(
             [bandvox.command, "fit", table, "-o", samples, "--samples", "1001", "--quiet",
              "--stats", statistics],
             check=True,
         )  # fmt: skip
-        ours = time.perf_counter() - start
-        memory = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+        said = json.loads(statistics.read_text())
+        row = {
+            "places": 10**power,
+            "seconds": time.perf_counter() - start,
+            "processor_seconds": processor_seconds(resource.RUSAGE_CHILDREN) - before,
+            "megabytes": said["peak_memory_bytes"] / 1e6,
+            "residual": said["counts"]["levels"][-1]["largest"],
+        }
         made = np.load(samples)[..., 0]
         x = np.linspace(points[:, 0].min(), points[:, 0].max(), made.shape[0])
         y = np.linspace(points[:, 1].min(), points[:, 1].max(), made.shape[1])
-        largest = np.abs(made - function(x[:, None], y[None, :])).max()
-        start = time.perf_counter()
+        row["largest"] = np.abs(made - function(x[:, None], y[None, :])).max()
         if power <= 6:
+            before = processor_seconds(resource.RUSAGE_SELF)
             CloughTocher2DInterpolator(points, values)
-        theirs = time.perf_counter() - start
-        residual = json.loads(statistics.read_text())["counts"]["levels"][-1]["largest"]
-        print(f"  1e{power} {ours:.2f} {theirs:.2f} {largest:.2e}, residual {residual:.1e}, "
-              f"at most {memory:.0f} MB so far", flush=True)  # fmt: skip
+            row["clough_tocher"] = processor_seconds(resource.RUSAGE_SELF) - before
+        rows.append(row)
+        print(f"  1e{power} {row['seconds']:.2f} {row['processor_seconds']:.2f} "
+              f"{row.get('clough_tocher', 0):.2f} {row['largest']:.2e}, residual "
+              f"{row['residual']:.1e}, {row['megabytes']:.0f} MB", flush=True)  # fmt: skip
+    return rows
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("bandvox")
     parser.add_argument("--large", action="store_true", help="from 1e3 to 1e7 places")
+    parser.add_argument("--json", type=pathlib.Path, help="where to write what --large measures")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         bandvox = Bandvox(arguments.bandvox, pathlib.Path(folder))
         if arguments.large:
-            compare_large(bandvox)
+            rows = compare_large(bandvox)
+            if arguments.json:
+                arguments.json.write_text(json.dumps(rows, indent=1, default=float) + "\n")
         else:
             compare_small(bandvox)
 
