@@ -42,6 +42,12 @@ std::string described(const py::array& array) {
     return text + ") of " + py::str(array.dtype()).cast<std::string>();
 }
 
+py::array numericArray(const py::handle& object, const char* what, const std::string& expected) {
+    py::array given = arrayOf(object, what, expected);
+    if (!isNumeric(given)) refuse(what, described(given), expected);
+    return given;
+}
+
 std::vector<openvdb::Vec3d> vectorsOf(const py::handle& object, const char* what) {
     const std::string expected = "numbers of shape (n, 3)";
     const py::array given = arrayOf(object, what, expected);
