@@ -16,8 +16,8 @@ def gyroid(x: Doubles, y: Doubles, z: Doubles) -> Doubles:
     """1 in walls around sin x cos y + sin y cos z + sin z cos x = 0, 0 elsewhere."""
     u, v, w = 6 * x, 6 * y, 6 * z
     wave = np.sin(u) * np.cos(v) + np.sin(v) * np.cos(w) + np.sin(w) * np.cos(u)
-    is_inside = (np.abs(wave) < 0.4) & (x * x + y * y + z * z < 1)
-    return is_inside.astype(np.float64)
+    walls: Doubles = np.where((np.abs(wave) < 0.4) & (x * x + y * y + z * z < 1), 1.0, 0.0)
+    return walls
 
 
 def main(folder: pathlib.Path) -> None:

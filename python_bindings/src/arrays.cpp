@@ -39,6 +39,7 @@ std::string described(const py::array& array) {
         if (axis > 0) text += ", ";
         text += std::to_string(array.shape(axis));
     }
+    if (array.ndim() == 1) text += ',';
     return text + ") of " + py::str(array.dtype()).cast<std::string>();
 }
 
