@@ -69,7 +69,7 @@ def test_the_wheel_holds_module_library_and_types(wheel, tmp_path):
     with zipfile.ZipFile(wheel) as archive:
         names = archive.namelist()
         archive.extractall(tmp_path)
-    assert {"bandvox/__init__.py", "bandvox/py.typed"} <= set(names)
+    assert {"bandvox/__init__.py", "bandvox/py.typed", "bandvox/_bandvox.pyi"} <= set(names)
     (module,) = [name for name in names if name.startswith("bandvox/_bandvox.cpython")]
     libraries = [name for name in names if re.match(r"bandvox/libbandvox\.so", name)]
     assert libraries == ["bandvox/libbandvox.so." + version.rpartition(".")[0]]
