@@ -34,20 +34,14 @@ struct VolumeObject {
 
 using SharedVolume = std::shared_ptr<VolumeObject>;
 
-std::string shortly(double number) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", number);
-    return text;
-}
-
 void judgeVolume(const VolumeFit& fit, const FitVolumeOptions& options, bool hasTolerance) {
     if (!fit.noiseReached) {
         std::string message = "no field differs from the values by as much as smooth says; ";
-        warn({message + "this one does by " + shortly(fit.rms) + " of the range"});
+        warn({message + "this one does by " + inDigits(fit.rms) + " of the range"});
     }
     if (options.noise > 0 || fit.largest <= options.tolerance) return;
-    std::string message = "the field is off by " + shortly(fit.largest);
-    message += " of the range at a point; expected " + shortly(options.tolerance);
+    std::string message = "the field is off by " + inDigits(fit.largest);
+    message += " of the range at a point; expected " + inDigits(options.tolerance);
     message += " at most, by tolerance";
     constexpr double kUseless = 0.01;
     if (hasTolerance || (!options.maxLevel && !(fit.largest <= kUseless))) {

@@ -4,6 +4,8 @@
 
 #include <bandvox/core/error.h>
 
+#include <cstdio>
+
 namespace bandvox::python {
 
 namespace py = pybind11;
@@ -58,6 +60,12 @@ py::object shaped(std::vector<double> numbers, std::vector<py::ssize_t> shape) {
     py::array array = ownedArray(std::move(numbers), std::move(shape));
     if (isNumber) return array.attr("__getitem__")(py::tuple());
     return array;
+}
+
+std::string inDigits(double number) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", number);
+    return text;
 }
 
 }  // namespace bandvox::python

@@ -4,6 +4,7 @@
 
 #include <pybind11/numpy.h>
 
+#include <string>
 #include <vector>
 
 namespace bandvox::python {
@@ -25,5 +26,8 @@ PlanePlaces planePlacesOf(const pybind11::handle& x, const pybind11::handle& y);
 
 /// An array of a shape that may be (); a number then.
 pybind11::object shaped(std::vector<double> numbers, std::vector<pybind11::ssize_t> shape);
+
+/// A number in three digits, for a message.
+std::string inDigits(double number);
 
 }  // namespace bandvox::python

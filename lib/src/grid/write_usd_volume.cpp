@@ -72,7 +72,7 @@ std::string assetPath(const std::string& path) {
 
 /// What FieldAsset calls the type of the values; empty if it has no word for it.
 std::string dataType(const openvdb::GridBase& grid, bool half) {
-    const std::string type = grid.valueType();
+    std::string type = grid.valueType();
     const bool isHalf = half || grid.saveFloatAsHalf();
     if (type == "float") return isHalf ? "half" : type;
     if (type == "vec3s") return isHalf ? "half3" : "float3";
