@@ -61,6 +61,10 @@ const CommandTable& convertTable() {
              "Where shells of a mesh overlap. union: inside is inside. sum: densities add up, "
              "so that near parts blend into each other.",
              filter},
+            {"base", 0, "Z", "",
+             "Of free-form surfaces that are a height field: the solid between them and the plane "
+             "z = Z, with walls.",
+             filter},
             {"clamp", 0, "", "", "Limit the density to 0 .. 1, which cuts off ringing.", filter},
             {"iso", 0, "D", formatNumber(density.iso),
              "Value that is the surface, of a mesh or for the commands that come after. Of a .vdb "
@@ -95,7 +99,8 @@ const CommandTable& convertTable() {
             "stacks "
             "of images and DICOM series come in as grids, and grids go out as arrays and stacks.",
             {{"INPUT",
-              "A mesh (.obj, .ply, .stl, .gltf, ...), a .vdb file (stdin.vdb is the standard "
+              "A mesh (.obj, .ply, .stl, .gltf, ...), free-form surfaces (.bpt, .obj), a .vdb file "
+              "(stdin.vdb is the standard "
               "input), an array (.npy, .nrrd, .nhdr, .mha, .mhd), slices (a folder or a pattern "
               "of images, slice.####.tif, or a .tif file with pages), a folder or a file of DICOM, "
               "points (.xyz, .csv, .txt, a .ply without faces), or a built-in shape such as "
@@ -116,6 +121,7 @@ const CommandTable& convertTable() {
                  "Distances from the surface of that."},
                 {"bandvox convert particles.csv -o water.vdb --radius 0.05",
                  "The union of balls around points."},
+                {"bandvox convert teapot.bpt -o teapot.vdb", "Bézier patches, as they are."},
                 {"bandvox convert spot.obj -o spot.vdb --color",
                  "The density, and the colours of the surface around it."},
                 {"bandvox convert spot.vdb -o spot.ply", "The surface of that, with its colours."},

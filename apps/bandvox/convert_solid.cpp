@@ -45,6 +45,8 @@ enum class Route { Auto, Exact, Sampled, Winding };
 
 struct ConvertRequest {
     std::string input;
+    bool isPatches = false;      ///< free-form surfaces
+    std::optional<double> base;  ///< of those
     Route route = Route::Auto;
     Overlap overlap = Overlap::Union;
     DensityOptions density;
@@ -59,6 +61,13 @@ struct ConvertRequest {
 void readRoute(const CommandLine& line, ConvertRequest& request) {
     request.route =
         static_cast<Route>(line.choice("route", {"auto", "exact", "sampled", "winding"}, 0));
+    const bool isExactRoute = request.route == Route::Auto || request.route == Route::Exact;
+    if (request.isPatches && !isExactRoute) {
+        throw Error(ErrorKind::Usage,
+                    "--route sampled and winding are not for free-form surfaces, "
+                    "as '" +
+                        request.input + "' has them; expected --route exact");
+    }
     if (request.route == Route::Sampled && !isShape(request.input)) {
         throw Error(ErrorKind::Usage,
                     "--route sampled takes a built-in shape, by its formula, and '" +
@@ -73,7 +82,8 @@ void readRoute(const CommandLine& line, ConvertRequest& request) {
     const bool isSampling = request.route == Route::Sampled || request.route == Route::Winding;
     if (line.has("oversample")) {
         // What of a mesh goes by its winding number is not known yet.
-        const bool mayBeUsed = request.route == Route::Auto && !isShape(request.input);
+        const bool mayBeUsed =
+            request.route == Route::Auto && !isShape(request.input) && !request.isPatches;
         if (!isSampling && !mayBeUsed) {
             throw Error(ErrorKind::Usage,
                         "--oversample has no meaning on the exact route; expected "
@@ -103,7 +113,15 @@ ConvertRequest parseConvert(const CommandLine& line) {
                                           request.input + "' is none");
     }
     refuseOptions(line, {"points", "radius"}, "with a mesh or a shape");
+    request.isPatches = isPatchFile(request.input);
     readRoute(line, request);
+    if (line.has("base")) {
+        if (!request.isPatches) {
+            throw Error(ErrorKind::Usage, "--base is for free-form surfaces (.bpt, .obj), and '" +
+                                              request.input + "' has none");
+        }
+        request.base = line.number("base", {}, 0);
+    }
     DensityOptions& density = request.density;
     readSize(line, density.resolution, density.voxelSize);
     readDensityOptions(line, request.output, density);
@@ -111,6 +129,10 @@ ConvertRequest parseConvert(const CommandLine& line) {
     density.sumOverlaps = request.overlap == Overlap::Sum;
 
     request.color = line.has("color");
+    if (request.color && request.isPatches) {
+        throw Error(ErrorKind::Usage, "--color takes a mesh with colours, and '" + request.input +
+                                          "' has free-form surfaces, which have none");
+    }
     if (request.color && isShape(request.input)) {
         throw Error(ErrorKind::Usage, "--color takes a mesh with colours, and '" + request.input +
                                           "' is a built-in shape, which has none");
@@ -176,6 +198,14 @@ DensityResult meshToDensity(CommandRun& run, const ConvertRequest& request, Mesh
     return result;
 }
 
+DensityResult patchesToDensity(CommandRun& run, const ConvertRequest& request) {
+    const PatchSolid solid = loadPatchSolid(
+        run, request.input, {.unite = request.overlap == Overlap::Union, .base = request.base});
+    DensityResult result = surfaceToDensity(*solid.source, request.density, run.progress());
+    result.metadata.holesCapped = static_cast<int>(solid.report.holes.size());
+    return result;
+}
+
 ConvertedGrids meshToGrids(CommandRun& run, const ConvertRequest& request) {
     if (!request.color) {
         return {meshToDensity(run, request, readMesh(request.input, run.progress())), {}};
@@ -236,12 +266,13 @@ void requireTolerance(const ConvertRequest& request, const DensityResult& result
 
 void convertSolid(ConvertJob& job) {
     const ConvertRequest request = parseConvert(job.line());
-    requireMeshOrShape("convert", request.input);
+    if (!request.isPatches) requireMeshOrShape("convert", request.input);
     if (!job.begin()) return;
     CommandRun& run = job.run();
     std::optional<AtomicFile> file = request.output.openFile();
     ConvertedGrids grids = isShape(request.input) ? ConvertedGrids{shapeToDensity(run, request), {}}
-                                                  : meshToGrids(run, request);
+                           : request.isPatches ? ConvertedGrids{patchesToDensity(run, request), {}}
+                                               : meshToGrids(run, request);
     DensityResult& result = grids.density;
     requireTolerance(request, result);
     finishDensity(run, request.output, result.grid, result.metadata);

@@ -4,6 +4,7 @@
 #include "commands.h"
 #include "density_report.h"
 #include "fit_output.h"
+#include "fit_report.h"
 #include "fit_volume.h"
 #include "mesh_output.h"
 #include "standard_streams.h"
@@ -38,7 +39,8 @@ const CommandTable& fitTable() {
             "continuously differentiable, and written as Bézier patches, samples, a mesh, a "
             "picture, or the solid under it. With --volume the places are in space, and the "
             "values become grids.",
-            {{"POINTS", "A table: .csv .xyz .txt, or .npy with a row for each point."}},
+            {{"POINTS",
+              "A table: .csv .xyz .txt, .npy with a row for each point, or the points of a .ply."}},
             {
                 {"columns", 0, "X,Y,VALUE,...", "x, y and all others",
                  "The columns to take, by name or number from 1; with --volume z comes after y.",
@@ -160,15 +162,9 @@ void sayFit(CommandRun& run, const SurfaceFit& fit) {
                           {"largest", level.largest},
                           {"rms", level.rms}});
     }
-    run.count("points", fit.points);
-    run.count("duplicates", fit.duplicates);
     run.count("tension", fit.tension);
     run.count("levels", levels);
-    if (fit.duplicates > 0) {
-        run.say("         " +
-                formatCount(static_cast<std::int64_t>(fit.duplicates), "point was", "points were") +
-                " in the place of another, and averaged");
-    }
+    sayDuplicates(run, fit.points, fit.duplicates);
 }
 
 // What the surface does between the points is not what they say if they are noisy or far apart.
@@ -188,20 +184,6 @@ void judgeShape(CommandRun& run, const FitRequest& request, const SurfaceFit& fi
                    formatNumber(request.fit.noise, 3) + ", by --smooth";
         run.warn({message}, ErrorKind::Result);
     }
-}
-
-// What the user asked for has to be there; what holds otherwise is worth a warning.
-void judgeFit(CommandRun& run, const FitRequest& request, const SurfaceFit& fit) {
-    const double largest = fit.report.back().largest;
-    if (request.fit.noise > 0 || largest <= request.fit.tolerance) return;
-    std::string message = "the surface is off by " + formatNumber(largest, 3);
-    message += " of the range at a point; expected " + formatNumber(request.fit.tolerance, 3);
-    message += " at most, by --tolerance";
-    // As where a crowd of points and one far away share a net: what is between them is anything.
-    constexpr double kUseless = 0.01;
-    const bool isUseless = !request.fit.maxLevel && !(largest <= kUseless);
-    if (request.hasTolerance || isUseless) throw Error(ErrorKind::Result, message);
-    run.warn({message}, ErrorKind::Result);
 }
 
 BsplineSurface chosenSum(const FitRequest& request, SurfaceFit& fit) {
@@ -241,16 +223,17 @@ void runFit(const CommandLine& line) {
     CommandRun run(line);
     AtomicFile output(request.output.path);
     NamedPoints named = readScatteredPoints(request.input, request.columns, run.progress());
-    run.say("read     " + request.input + ": " +
-            formatCount(static_cast<std::int64_t>(named.points.size()), "point", "points") +
-            " with " + joined(named.names, ", "));
+    sayPoints(run, request.input, named);
     SurfaceFit fit;
     {
         const ProgressStage stage(run.progress(), "fitting", 0);
         fit = fitSurface(named.points, request.fit, run.progress());
     }
     sayFit(run, fit);
-    judgeFit(run, request, fit);
+    if (request.fit.noise <= 0) {
+        judgeResidual(run, {"surface", fit.report.back().largest, request.fit.tolerance,
+                            request.hasTolerance, request.fit.maxLevel.has_value()});
+    }
     judgeShape(run, request, fit);
     const BsplineSurface surface = chosenSum(request, fit);
     fit.levels.clear();

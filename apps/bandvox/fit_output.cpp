@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 namespace bandvox::app {
 namespace {
@@ -81,6 +82,31 @@ void writeSolid(CommandRun& run, AtomicFile& output, const FitOutput& request,
     run.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, grids, request.write); });
 }
 
+std::string quantityWords() {
+    std::vector<std::string> words;
+    for (const SurfaceQuantity quantity : surfaceQuantities()) words.push_back(nameOf(quantity));
+    return joined(words, ", ");
+}
+
+std::vector<SurfaceQuantity> readQuantities(const CommandLine& line, FitOutput::Kind kind) {
+    const auto text = line.text("quantities");
+    if (kind != FitOutput::Kind::Samples && kind != FitOutput::Kind::Picture) {
+        refuseOptions(line, {"quantities"}, "with this kind of output");
+    }
+    if (!text && kind == FitOutput::Kind::Samples) return {SurfaceQuantity::Value};
+    std::vector<SurfaceQuantity> quantities;
+    if (!text) return quantities;
+    for (const std::string_view word : split(*text, ',')) {
+        const auto quantity = surfaceQuantityNamed(word);
+        if (!quantity) line.fail("quantities", "some of " + quantityWords());
+        if (std::find(quantities.begin(), quantities.end(), *quantity) != quantities.end()) {
+            line.fail("quantities", "each of them once");
+        }
+        quantities.push_back(*quantity);
+    }
+    return quantities;
+}
+
 FitOutput::Kind kindOf(const std::filesystem::path& path) {
     const std::string extension = extensionOf(path);
     if (extension == ".bpt") return FitOutput::Kind::Patches;
@@ -107,6 +133,11 @@ std::vector<OptionEntry> fitOutputEntries() {
         {"samples", 0, "N", std::to_string(kStandardSamples),
          "Samples along the longer side of a mesh, a picture or an array, from border to border.",
          "Output"},
+        {"quantities", 0, "LIST", "value",
+         "What an .npy array has of each column, with commas between: " + quantityWords() +
+             "; .exr has them of the first as channels besides. With --volume: value, gradient, "
+             "which becomes a grid of vectors, as density_gradient.",
+         "Output"},
         resolutionEntry(DensityOptions().resolution),
         voxelSizeEntry(),
         {"base", 0, "Z", "below the surface", "Where the solid of a .vdb file ends below.",
@@ -130,6 +161,7 @@ FitOutput readFitOutput(const CommandLine& line) {
                            request.kind == FitOutput::Kind::Picture ||
                            request.kind == FitOutput::Kind::Samples;
     if (!isSampled) refuseOptions(line, {"samples"}, "with this kind of output");
+    request.quantities = readQuantities(line, request.kind);
     if (request.kind != FitOutput::Kind::Density) {
         refuseOptions(
             line, {"resolution", "voxel-size", "base", "cutoff", "order", "half", "compression"},
@@ -155,9 +187,10 @@ void writeFit(CommandRun& run, AtomicFile& output, const FitOutput& request,
             case FitOutput::Kind::Patches:
                 return writeBezierPatches(file, surface, 0, run.progress());
             case FitOutput::Kind::Samples:
-                return writeSamples(file, surface, samples, run.progress());
+                return writeSamples(file, surface, samples, request.quantities, run.progress());
             case FitOutput::Kind::Picture:
-                return writeImage(file, heightFieldImage(surface, samples, 0, red),
+                return writeImage(file,
+                                  heightFieldImage(surface, samples, 0, red, request.quantities),
                                   {.color = red >= 0}, run.progress());
             default:
                 return writeMesh(file, heightFieldMesh(surface, samples, 0, red), run.progress());

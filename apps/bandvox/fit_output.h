@@ -8,6 +8,7 @@
 #include <bandvox/core/atomic_file.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/scatter/bspline_surface.h>
+#include <bandvox/scatter/surface_quantity.h>
 
 #include <filesystem>
 #include <optional>
@@ -24,8 +25,9 @@ struct FitOutput {
     enum class Kind { Patches, Mesh, Picture, Samples, Density };
     std::filesystem::path path;
     Kind kind = Kind::Patches;
-    int samples = 0;             ///< along the longer side
-    std::optional<double> base;  ///< of the solid, world units
+    int samples = 0;                          ///< along the longer side
+    std::vector<SurfaceQuantity> quantities;  ///< of an array, or a picture's own channels
+    std::optional<double> base;               ///< of the solid, world units
     DensityOptions density;
     VdbWriteOptions write;
 };

@@ -2,6 +2,7 @@
 
 #include "command_run.h"
 #include "fit_columns.h"
+#include "fit_report.h"
 #include "mesh_output.h"
 #include "standard_streams.h"
 #include "volume_options.h"
@@ -17,11 +18,18 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace bandvox::app {
 namespace {
+
+/// What is wanted of each column.
+struct VolumeQuantities {
+    bool value = true;
+    bool gradient = false;
+};
 
 struct FitVolumeRequest {
     std::string input;
@@ -32,7 +40,24 @@ struct FitVolumeRequest {
     int resolution = DensityOptions().resolution;
     double voxelSize = 0;
     VdbWriteOptions write;
+    VolumeQuantities quantities;
 };
+
+VolumeQuantities readVolumeQuantities(const CommandLine& line) {
+    const auto text = line.text("quantities");
+    if (!text) return {};
+    VolumeQuantities quantities{false, false};
+    for (const std::string_view word : split(*text, ',')) {
+        if (word == "value") {
+            quantities.value = true;
+        } else if (word == "gradient") {
+            quantities.gradient = true;
+        } else {
+            line.fail("quantities", "value, gradient, or both with a comma between");
+        }
+    }
+    return quantities;
+}
 
 FitVolumeRequest parseFitVolume(const CommandLine& line) {
     FitVolumeRequest request;
@@ -58,6 +83,7 @@ FitVolumeRequest parseFitVolume(const CommandLine& line) {
     readSize(line, request.resolution, request.voxelSize);
     request.write.half = line.has("half");
     request.write.compression = readCompression(line);
+    request.quantities = readVolumeQuantities(line);
     return request;
 }
 
@@ -79,35 +105,41 @@ void sayVolumeFit(CommandRun& run, const VolumeFit& fit) {
                           {"largest", level.largest},
                           {"rms", level.rms}});
     }
-    run.count("points", fit.points);
-    run.count("duplicates", fit.duplicates);
     run.count("control_points", fit.volume.controlPoints());
     run.count("reach", fit.volume.reach());
     run.count("largest", fit.largest);
     run.count("levels", levels);
-    if (fit.duplicates > 0) {
-        run.say("         " +
-                formatCount(static_cast<std::int64_t>(fit.duplicates), "point was", "points were") +
-                " in the place of another, and averaged");
-    }
+    sayDuplicates(run, fit.points, fit.duplicates);
 }
 
-// What the user asked for has to be there; what holds otherwise is worth a warning.
 void judgeVolumeFit(CommandRun& run, const FitVolumeRequest& request, const VolumeFit& fit) {
-    std::string message;
     if (!fit.noiseReached) {
-        message = "no field differs from the values by as much as --smooth says; this one does by ";
-        message += formatNumber(fit.rms, 3) + " of the range";
+        std::string message = "no field differs from the values by as much as --smooth says; ";
+        message += "this one does by " + formatNumber(fit.rms, 3) + " of the range";
         run.warn({message}, ErrorKind::Result);
     }
-    if (request.fit.noise > 0 || fit.largest <= request.fit.tolerance) return;
-    message = "the field is off by " + formatNumber(fit.largest, 3);
-    message += " of the range at a point; expected " + formatNumber(request.fit.tolerance, 3);
-    message += " at most, by --tolerance";
-    constexpr double kUseless = 0.01;
-    const bool isUseless = !request.fit.maxLevel && !(fit.largest <= kUseless);
-    if (request.hasTolerance || isUseless) throw Error(ErrorKind::Result, message);
-    run.warn({message}, ErrorKind::Result);
+    if (request.fit.noise > 0) return;
+    judgeResidual(run, {"field", fit.largest, request.fit.tolerance, request.hasTolerance,
+                        request.fit.maxLevel.has_value()});
+}
+
+std::vector<ColumnGrid> wantedGrids(const FitVolumeRequest& request,
+                                    const std::vector<std::string>& names) {
+    const std::vector<ColumnGrid> values = gridsOfColumns(names);
+    std::vector<ColumnGrid> wanted;
+    if (request.quantities.value) wanted = values;
+    for (const ColumnGrid& grid : values) {
+        if (!request.quantities.gradient) break;
+        for (int c = 0; c < grid.columns; ++c) {
+            const int column = grid.column + c;
+            const std::string name =
+                grid.columns == 1 ? grid.name : names[static_cast<std::size_t>(column)];
+            ColumnGrid gradient{name + "_gradient", column, 1, openvdb::VEC_COVARIANT};
+            gradient.isGradient = true;
+            wanted.push_back(gradient);
+        }
+    }
+    return wanted;
 }
 
 openvdb::GridPtrVec sampleVolume(CommandRun& run, const FitVolumeRequest& request,
@@ -117,7 +149,7 @@ openvdb::GridPtrVec sampleVolume(CommandRun& run, const FitVolumeRequest& reques
     const openvdb::Vec3d size = volume.bounds().extents();
     if (!(voxelSize > 0)) voxelSize = std::max({size[0], size[1], size[2]}) / request.resolution;
     openvdb::GridPtrVec grids =
-        splineVolumeToGrids(volume, gridsOfColumns(names), voxelSize, run.progress());
+        splineVolumeToGrids(volume, wantedGrids(request, names), voxelSize, run.progress());
     std::vector<std::string> made;
     for (const auto& grid : grids) {
         setSourceMetadata(*grid, std::filesystem::path(request.input).filename().string());
@@ -153,9 +185,7 @@ void runFitVolume(const CommandLine& line) {
     CommandRun run(line);
     AtomicFile output(request.output);
     const NamedPoints named = readScatteredPoints(request.input, request.columns, run.progress());
-    run.say("read     " + request.input + ": " +
-            formatCount(static_cast<std::int64_t>(named.points.size()), "point", "points") +
-            " with " + joined(named.names, ", "));
+    sayPoints(run, request.input, named);
     VolumeFit fit;
     {
         const ProgressStage stage(run.progress(), "fitting", 0);

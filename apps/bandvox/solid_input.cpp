@@ -3,6 +3,7 @@
 #include "words.h"
 
 #include <bandvox/source/read_mesh.h>
+#include <bandvox/source/read_patches.h>
 #include <bandvox/source/shapes.h>
 #include <bandvox/source/unite_shells.h>
 
@@ -72,6 +73,44 @@ std::string meshOrShape() {
 
 PositionalEntry solidInputEntry() {
     return {"INPUT", "A " + meshOrShape() + "."};
+}
+
+bool isPatchFile(const std::string& input) {
+    if (isShape(input) || !mayHoldPatches(input)) return false;
+    return extensionOf(input) == ".bpt" ||
+           (std::filesystem::is_regular_file(input) && hasFreeForm(input));
+}
+
+PatchSolid loadPatchSolid(CommandRun& run, const std::string& input,
+                          const PatchSolidOptions& options) {
+    PatchModel model = readPatches(input, run.progress());
+    const auto count = [](std::size_t n, const char* one, const char* many) {
+        return formatCount(static_cast<std::int64_t>(n), one, many);
+    };
+    run.say("read     " + input + ": " + count(model.patches.size(), "patch", "patches") + ", " +
+            count(model.objects.size(), "object", "objects"));
+    run.count("patches", model.patches.size());
+    run.count("objects", model.objects.size());
+    run.warn(model.warnings, ErrorKind::Input);
+    PatchSolid solid = makePatchSolid(std::filesystem::path(input).filename().string(),
+                                      std::move(model.patches), options, run.progress());
+    const PatchSolidReport& report = solid.report;
+    std::vector<std::string> parts{count(report.pieces, "piece", "pieces")};
+    if (report.patchesFlipped > 0) {
+        parts.push_back(count(report.patchesFlipped, "patch flipped", "patches flipped"));
+    }
+    if (report.piecesTurned > 0) {
+        parts.push_back(
+            count(report.piecesTurned, "piece turned outward", "pieces turned outward"));
+    }
+    run.say("solid    " + joined(parts, ", "));
+    sayHoles(run, report.holes);
+    if (report.piecesMeeting > 0) {
+        run.say("union    " + count(report.piecesMeeting, "piece", "pieces") + " near others");
+    }
+    run.count("holes_capped", report.holes.size());
+    run.warn(report.warnings, ErrorKind::Input);
+    return solid;
 }
 
 void requireMeshOrShape(const std::string& verb, const std::string& input) {

@@ -5,6 +5,7 @@
 
 #include <bandvox/source/close_mesh.h>
 #include <bandvox/source/mesh.h>
+#include <bandvox/source/patch_solid.h>
 #include <bandvox/source/read_mesh.h>
 
 #include <string>
@@ -13,6 +14,10 @@ namespace bandvox::app {
 
 /// The argument of a command that takes a mesh or a built-in shape.
 PositionalEntry solidInputEntry();
+
+/// True if it is a file with free-form surfaces, which are converted as such: a .bpt file, or an
+/// .obj file that has one. Throws Error(ErrorKind::Input) if an .obj file cannot be read.
+bool isPatchFile(const std::string& input);
 
 /// Throws Error(ErrorKind::Input), which says that one cannot `verb` it, unless `input` is named
 /// like a mesh file or a built-in shape.
@@ -37,6 +42,11 @@ struct SolidMeshOptions {
 
 /// Reads a mesh and makes it the boundary of a solid; says and counts what was found and done.
 SolidMesh loadSolidMesh(CommandRun& run, const std::string& input, const SolidMeshOptions& options);
+
+/// Reads free-form surfaces and makes them the boundary of a solid; says and counts what was found
+/// and done.
+PatchSolid loadPatchSolid(CommandRun& run, const std::string& input,
+                          const PatchSolidOptions& options);
 
 /// The same of a file that has been read.
 SolidMesh makeSolidMesh(CommandRun& run, const std::string& input, MeshFile file,

@@ -29,8 +29,8 @@ def png(path, picture):
             file.write(struct.pack(">I", zlib.crc32(kind + data)))
 
 
-def shaded(surface):
-    """Seen from above, lit from the left: shades of 101 x 101 normals, interpolated between them."""
+def sampled(surface):
+    """Heights and unit normals of 101 x 101 places a little inside the square, [x][y]."""
     line = np.linspace(0.03, 0.97, SIDE)
     x, y = (a.ravel() for a in np.meshgrid(line, line, indexing="ij"))
     step = 1e-4
@@ -42,12 +42,62 @@ def shaded(surface):
 
     normal = np.stack([-slope(step, 0), -slope(0, step), np.ones_like(x)])
     normal /= np.linalg.norm(normal, axis=0)
+    places = np.stack([x, y, surface(np.column_stack([x, y]))])
+    return places.reshape(3, SIDE, SIDE), normal.reshape(3, SIDE, SIDE)
+
+
+def brightness(normal):
+    """Of a matt surface that is lit from the left."""
     light = np.array([-0.75, 0.3, 0.6]) / np.linalg.norm([-0.75, 0.3, 0.6])
-    shade = np.nan_to_num(np.clip(light @ normal, 0, 1)).reshape(SIDE, SIDE)
+    return np.nan_to_num(np.clip(np.tensordot(light, normal, 1), 0, 1)) ** 0.8
+
+
+def shaded(surface):
+    """Seen from above: shades of 101 x 101 normals, interpolated between them."""
+    shade = brightness(sampled(surface)[1])
     fine = np.linspace(0, SIDE - 1, SCALE * (SIDE - 1))
     shade = np.stack([np.interp(fine, np.arange(SIDE), row) for row in shade])
     shade = np.stack([np.interp(fine, np.arange(SIDE), row) for row in shade.T])
-    return (255 * shade[::-1] ** 0.8).astype(np.uint8)
+    return (255 * shade[::-1]).astype(np.uint8)
+
+
+def seen_aslant(surface, width=SCALE * (SIDE - 1), height=170, samples=3):
+    """Gouraud's shading of 2 x 100 x 100 triangles, in perspective, nearest last."""
+    places, normal = sampled(surface)
+    eye, target = np.array([-0.9, -1.5, 1.35]), np.array([0.5, 0.5, 0.02])
+    ahead = (target - eye) / np.linalg.norm(target - eye)
+    right = np.cross(ahead, [0, 0, 1])
+    right /= np.linalg.norm(right)
+    view = np.tensordot([right, np.cross(right, ahead), ahead],
+                        places - eye[:, None, None], 1)  # fmt: skip
+    w, h = width * samples, height * samples
+    focal = 1.95 * w
+    x, y = w / 2 + focal * view[0] / view[2], h / 2 - focal * view[1] / view[2]
+    corners = np.stack([x, y, brightness(normal), view[2]])
+    quads = [corners[:, :-1, :-1], corners[:, 1:, :-1], corners[:, 1:, 1:], corners[:, :-1, 1:]]
+    triangles = np.concatenate([np.stack([quads[i].reshape(4, -1) for i in three])
+                                for three in ((0, 1, 2), (0, 2, 3))], 2)  # fmt: skip
+    picture = np.ones((h, w))
+    for k in np.argsort(-triangles[:, 3].mean(0)):
+        fill(picture, *triangles[:, :3, k].T)
+    picture = picture.reshape(height, samples, width, samples).mean((1, 3))
+    return np.round(255 * picture).astype(np.uint8)
+
+
+def fill(picture, x, y, shade):
+    """A triangle, by its corners, with shades that are linear across it."""
+    (left, top), (right, bottom) = np.floor([x.min(), y.min()]), np.ceil([x.max(), y.max()]) + 1
+    left, top = max(int(left), 0), max(int(top), 0)
+    at_x, at_y = np.meshgrid(np.arange(left, min(int(right), picture.shape[1])),
+                             np.arange(top, min(int(bottom), picture.shape[0])))  # fmt: skip
+    area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
+    if area == 0 or at_x.size == 0:
+        return
+    b = ((at_x - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (at_y - y[0])) / area
+    c = ((x[1] - x[0]) * (at_y - y[0]) - (at_x - x[0]) * (y[1] - y[0])) / area
+    inside = (b >= 0) & (c >= 0) & (b + c <= 1)
+    value = shade[0] + b * (shade[1] - shade[0]) + c * (shade[2] - shade[0])
+    picture[at_y[inside], at_x[inside]] = value[inside]
 
 
 def side_by_side(pictures):
@@ -86,17 +136,19 @@ def main():
         ours = bandvox.fit(points, values)
         theirs = CloughTocher2DInterpolator(points, values, tol=1e-12, maxiter=5000)
         figures = [lambda places: run.bump(*places.T), theirs, ours]
-        png(folder / "fit-bump.png", side_by_side([shaded(figure) for figure in figures]))
-        levels = [bandvox.fit(points, values, f"1..{last}") for last in (1, 2, 3, 4)]
+        aslant = side_by_side([seen_aslant(figure) for figure in figures])
+        above = side_by_side([shaded(figure) for figure in figures])
+        png(folder / "fit-bump.png", np.vstack([aslant, above]))
+        levels = [bandvox.fit(points, values, "--levels", f"1..{last}") for last in (1, 2, 3, 4)]
         known = contour_points(terrain)
-        made = bandvox.fit(known[:, :2], known[:, 2], tolerance="1e-4")
+        made = bandvox.fit(known[:, :2], known[:, 2], "--tolerance", "1e-4")
         places = np.full((SCALE * (SIDE - 1),) * 2, 255, np.uint8)
         pixels = np.clip((known[:, :2] - 0.03) / 0.94 * places.shape[0], 0, places.shape[0] - 1)
         places[places.shape[0] - 1 - pixels[:, 1].astype(int), pixels[:, 0].astype(int)] = 0
         truth = shaded(lambda at: terrain(*at.T))
         png(folder / "fit-terrain.png", side_by_side([places, shaded(made), truth]))
         print(f"terrain: {len(known)} places")
-        png(folder / "fit-levels.png", side_by_side([shaded(level) for level in levels]))
+        png(folder / "fit-levels.png", side_by_side([seen_aslant(level, 250, 145) for level in levels]))
 
 
 if __name__ == "__main__":

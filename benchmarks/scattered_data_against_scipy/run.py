@@ -57,14 +57,11 @@ class Bandvox:
     def __init__(self, command, folder):
         self.command, self.folder = command, folder
 
-    def fit(self, points, values, levels="1..99", tolerance="1e-12"):
+    def fit(self, points, values, *options):
         table, patches = self.folder / "points.npy", self.folder / "surface.bpt"
         np.save(table, np.column_stack([points, values]))
-        subprocess.run(
-            [self.command, "fit", table, "-o", patches, "--levels", levels, "--tolerance",
-             tolerance, "--quiet"],
-            check=True,
-        )  # fmt: skip
+        command = [self.command, "fit", table, "-o", patches, "--quiet", *options]
+        subprocess.run(command, check=True)
         numbers = np.array(patches.read_text().split()[1:], dtype=float).reshape(-1, 50)
         return self.evaluator(numbers[:, 2:].reshape(-1, 4, 4, 3))
 

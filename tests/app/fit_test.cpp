@@ -4,16 +4,19 @@
 
 #include <bandvox/grid/density_grid.h>
 
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -314,6 +317,74 @@ TEST_F(Fit, ReadsArraysOfNumpy) {
     const RunResult result = fit({"four.npy", "-o", "four.bpt"});
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_NE(result.err.find("4 points"), std::string::npos) << result.err;
+}
+
+TEST_F(Fit, WritesDerivativesNormalsAndCurvature) {
+    ASSERT_EQ(fit({"heights.csv", "-o", "what.npy", "--samples", "9", "--columns", "x,y,height",
+                   "--quantities", "value,normal,mean"})
+                  .status,
+              0);
+    const std::string bytes = read("what.npy");
+    EXPECT_NE(bytes.find("(9, 9, 5)"), std::string::npos);
+    ASSERT_EQ(bytes.size(), 128 + 9 * 9 * 5 * sizeof(double));
+    std::array<double, 5> middle{};
+    std::memcpy(middle.data(), bytes.data() + 128 + (4 * 9 + 4) * sizeof(middle), sizeof(middle));
+    EXPECT_NEAR(middle[1] * middle[1] + middle[2] * middle[2] + middle[3] * middle[3], 1, 1e-12);
+    EXPECT_GT(middle[3], 0);
+
+    ASSERT_EQ(
+        fit({"heights.csv", "-o", "what.exr", "--samples", "16", "--quantities", "gaussian,dx"})
+            .status,
+        0);
+    const auto picture = OIIO::ImageInput::open((*sFolder / "what.exr").string());
+    ASSERT_TRUE(picture);
+    const auto& names = picture->spec().channelnames;
+    for (const char* name : {"gaussian", "dx", "Z", "N.X"}) {
+        EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
+    }
+    const RunResult unknown = fit({"heights.csv", "-o", "x.npy", "--quantities", "value,torsion"});
+    EXPECT_EQ(unknown.status, 2);
+    EXPECT_NE(unknown.err.find("gaussian, mean"), std::string::npos) << unknown.err;
+    EXPECT_EQ(fit({"heights.csv", "-o", "x.npy", "--quantities", "mean,mean"}).status, 2);
+    EXPECT_EQ(fit({"heights.csv", "-o", "x.obj", "--quantities", "mean"}).status, 2);
+}
+
+TEST_F(Fit, WritesGradientsOfPlacesInSpace) {
+    openvdb::initialize();
+    writeText(*sFolder / "cloud.csv", cloudOfPoints());
+    ASSERT_EQ(
+        fit({"cloud.csv", "--volume", "-o", "slopes.vdb", "-r", "20", "--quantities", "gradient"})
+            .status,
+        0);
+    const auto grids = readVdb(*sFolder / "slopes.vdb");
+    ASSERT_FALSE(grids.empty());
+    for (const auto& grid : grids) {
+        EXPECT_TRUE(grid->getName().ends_with("_gradient")) << grid->getName();
+        EXPECT_TRUE(grid->isType<openvdb::Vec3SGrid>());
+    }
+    EXPECT_EQ(fit({"cloud.csv", "--volume", "-o", "x.vdb", "--quantities", "mean"}).status, 2);
+}
+
+TEST_F(Fit, WritesNoMoreThanAMillionPatchesUnasked) {
+    // Points for a net of 1024 x 1024 cells.
+    constexpr std::size_t kPoints = 700'000;
+    std::string bytes("\x93NUMPY\x01\x00\x76\x00", 10);
+    bytes += "{'descr': '<f8', 'fortran_order': False, 'shape': (700000, 3), }";
+    bytes.resize(128, ' ');
+    std::mt19937 generator(1);
+    for (std::size_t i = 0; i < kPoints; ++i) {
+        const double x = generator() / 4294967296.0;
+        const double y = generator() / 4294967296.0;
+        for (const double number : {x, y, heightAt(x, y)}) {
+            bytes.append(reinterpret_cast<const char*>(&number), sizeof(number));
+        }
+    }
+    writeText(*sFolder / "many.npy", bytes);
+    const RunResult result = fit({"many.npy", "-o", "many.bpt"});
+    EXPECT_EQ(result.status, 2);
+    EXPECT_NE(result.err.find("1048576 patches"), std::string::npos) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(*sFolder / "many.bpt"));
+    EXPECT_EQ(fit({"many.npy", "-o", "many.bpt", "--levels", "1..5"}).status, 0);
 }
 
 TEST_F(Fit, RunsWhatItsPageShows) {

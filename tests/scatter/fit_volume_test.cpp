@@ -93,6 +93,7 @@ TEST(FitVolume, TakesValuesOfWavesAndBalls) {
             const VolumeFit fit = fitVolume(points);
             EXPECT_EQ(fit.points, count);
             EXPECT_LE(fit.largest, 1e-12);
+            EXPECT_LE(fit.rms, fit.largest);
             EXPECT_LE(largestLeft(fit.volume, points), 2e-12);
             const double error = rmsInside(fit.volume, f);
             EXPECT_LE(error, allowed) << count;
@@ -127,6 +128,54 @@ TEST(FitVolume, IsSmooth) {
         }
         before = second;
     }
+}
+
+TEST(FitVolume, HasTheGradientOfItsValues) {
+    // Crowds of points, so that finer nets and bumps take a part.
+    ScatteredPoints points = randomInCube(400, 11, wave);
+    const std::size_t count = points.size();
+    for (std::size_t i = 0; i < count / 4; ++i) {
+        points.x.push_back(points.x[i] + 1e-3);
+        points.y.push_back(points.y[i]);
+        points.z.push_back(points.z[i] - 5e-4);
+        points.values.push_back(wave(points.x.back(), points.y.back(), points.z.back()));
+    }
+    const VolumeFit fit = fitVolume(points);
+    constexpr double h = 1e-6;
+    double largest = 0;
+    for (std::size_t i = 0; i < points.size(); i += 7) {
+        const openvdb::Vec3d at(points.x[i] + 1e-4, points.y[i] - 2e-4, points.z[i]);
+        const openvdb::Vec3d gradient = fit.volume.gradient(at);
+        for (int axis = 0; axis < 3; ++axis) {
+            openvdb::Vec3d step(0.0);
+            step[axis] = h;
+            const double expected =
+                (fit.volume.value(at + step) - fit.volume.value(at - step)) / (2 * h);
+            largest = std::max(largest, std::abs(gradient[axis] - expected));
+        }
+    }
+    EXPECT_LE(largest, 2e-4);
+    EXPECT_GT(largest, 0);
+
+    constexpr double kVoxel = 0.02;
+    ColumnGrid wanted{"slope", 0, 1, openvdb::VEC_COVARIANT};
+    wanted.isGradient = true;
+    const auto grids = splineVolumeToGrids(fit.volume, {{"value", 0}, wanted}, kVoxel);
+    ASSERT_EQ(grids.size(), 2U);
+    const auto slopes = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids[1]);
+    ASSERT_TRUE(slopes);
+    EXPECT_EQ(slopes->getVectorType(), openvdb::VEC_COVARIANT);
+    EXPECT_EQ(slopes->activeVoxelCount(), grids[0]->activeVoxelCount());
+    int voxels = 0;
+    for (auto i = slopes->cbeginValueOn(); i; ++i) {
+        if (++voxels % 97 != 0) continue;
+        const openvdb::Vec3d expected = fit.volume.gradient(slopes->indexToWorld(i.getCoord()));
+        EXPECT_LE((openvdb::Vec3d(*i) - expected).length(), 1e-5 * (1 + expected.length()));
+    }
+    EXPECT_GT(voxels, 10000);
+    wanted.columns = 3;
+    EXPECT_EQ(errorKindOf([&] { splineVolumeToGrids(fit.volume, {wanted}, kVoxel); }),
+              ErrorKind::Usage);
 }
 
 TEST(FitVolume, SmoothsNoise) {

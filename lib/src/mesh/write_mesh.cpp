@@ -1,3 +1,4 @@
+#include "core/letter_case.h"
 #include "core/words.h"
 #include "mesh/mesh_checksum.h"
 #include "mesh/mesh_formats.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -30,9 +30,7 @@ constexpr std::array kMeshFormats{
     MeshFormat{".glb", writeGlb, true, true}};
 
 const MeshFormat* formatOf(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lowerExtension(path);
     const auto* found =
         std::find_if(kMeshFormats.begin(), kMeshFormats.end(),
                      [&](const MeshFormat& format) { return extension == format.extension; });

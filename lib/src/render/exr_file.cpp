@@ -102,6 +102,9 @@ std::vector<DataChannel> dataChannels(const Image& image, const ImageChannels& c
         data.insert(data.end(),
                     {{"P.X", position, 3}, {"P.Y", position + 1, 3}, {"P.Z", position + 2, 3}});
     }
+    for (const ImagePlane& plane : image.planes) {
+        data.push_back({plane.name.c_str(), plane.values.data(), 1});
+    }
     return data;
 }
 

@@ -53,6 +53,7 @@ class VolumeFitting {
                       int steps, SpaceColumns& control);
     void measure(const SpacePoints& points, const SpaceColumns& control,
                  const SpaceColumns& wanted);
+    void measureLacking();
     void report(int level, std::size_t controlPoints);
     double noiseLeft() const;
     void keep(int level, SpaceNet net);
@@ -113,20 +114,25 @@ void VolumeFitting::makeNets(int level) {
 /// What the nets lack of `wanted` at the points.
 void VolumeFitting::measure(const SpacePoints& points, const SpaceColumns& control,
                             const SpaceColumns& wanted) {
-    mLargest = 0;
-    double squares = 0;
     std::vector<double> found(points.size());
     for (std::size_t c = 0; c < control.size(); ++c) {
         points.evaluate(control[c], found);
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            mLacking[c][i] = wanted[c][i] - found[i];
-            const double lacking = std::abs(mLacking[c][i]);
-            // So that what is no number is not passed over.
-            if (!(lacking <= mLargest)) mLargest = lacking;
-        }
-        squares += dotProduct(mLacking[c], mLacking[c]);
+        for (std::size_t i = 0; i < found.size(); ++i) mLacking[c][i] = wanted[c][i] - found[i];
     }
-    mRms = std::sqrt(squares / static_cast<double>(points.size() * control.size()));
+    measureLacking();
+}
+
+void VolumeFitting::measureLacking() {
+    mLargest = 0;
+    double squares = 0;
+    for (const auto& column : mLacking) {
+        for (const double lacking : column) {
+            // So that what is no number is not passed over.
+            if (!(std::abs(lacking) <= mLargest)) mLargest = std::abs(lacking);
+        }
+        squares += dotProduct(column, column);
+    }
+    mRms = std::sqrt(squares / static_cast<double>(mParts.points().size() * mLacking.size()));
 }
 
 void VolumeFitting::report(int level, std::size_t controlPoints) {
@@ -277,17 +283,14 @@ void VolumeFitting::takeBumps() {
         constexpr int kPasses = 2;  // the second takes what rounding has left of the first
         for (int pass = 0; pass < kPasses && mLargest > mOptions.tolerance; ++pass) {
             BumpLayer layer{level, {}};
-            mLargest = 0;
             std::vector<double> found(mParts.points().size());
             for (auto& lacking : mLacking) {
                 layer.sizes.push_back(
                     bumps.sizes(lacking, 0.3 * mOptions.tolerance, kSteps, mProgress));
                 bumps.evaluate(layer.sizes.back(), found);
-                for (std::size_t i = 0; i < found.size(); ++i) {
-                    lacking[i] -= found[i];
-                    mLargest = std::max(mLargest, std::abs(lacking[i]));
-                }
+                for (std::size_t i = 0; i < found.size(); ++i) lacking[i] -= found[i];
             }
+            measureLacking();
             mParts.bumps.push_back(std::move(layer));
         }
     }

@@ -16,6 +16,14 @@ double bumpProfile(double t) {
     return rest * rest * rest / 4;
 }
 
+/// Its derivative.
+double bumpSlope(double t) {
+    const double u = 2 * std::abs(t);
+    if (u >= 2) return 0;
+    const double slope = u <= 1 ? u * (2.25 * u - 3) : -0.75 * (2 - u) * (2 - u);
+    return t < 0 ? -2 * slope : 2 * slope;
+}
+
 /// Calls body(other) for the points in the cells around that of point `i`.
 template <typename Body>
 void forOthers(const SortedSpacePoints& points, const OccupiedCells& cells, std::size_t i,
@@ -35,6 +43,18 @@ void forOthers(const SortedSpacePoints& points, const OccupiedCells& cells, std:
 double bumpHeight(const std::array<double, 3>& offset, double radius) {
     return bumpProfile(offset[0] / radius) * bumpProfile(offset[1] / radius) *
            bumpProfile(offset[2] / radius);
+}
+
+std::array<double, 3> bumpGradient(const std::array<double, 3>& offset, double radius) {
+    std::array<double, 3> gradient{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        gradient[axis] = 1 / radius;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double t = offset[a] / radius;
+            gradient[axis] *= a == axis ? bumpSlope(t) : bumpProfile(t);
+        }
+    }
+    return gradient;
 }
 
 double sharedCells(const SortedSpacePoints& points, const OccupiedCells& cells) {

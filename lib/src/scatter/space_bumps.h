@@ -13,6 +13,9 @@ namespace bandvox {
 /// and 0 where a coordinate is `radius` off or more.
 double bumpHeight(const std::array<double, 3>& offset, double radius);
 
+/// Its gradient there.
+std::array<double, 3> bumpGradient(const std::array<double, 3>& offset, double radius);
+
 /// Bumps at all points that together have given values there.
 class SpaceBumps {
   public:

@@ -77,10 +77,19 @@ class LayerReader {
     /// Adds to each column's value at a place.
     void addTo(const std::array<double, 3>& at, double* values);
 
+    /// Adds to each column's gradient, [column][axis], by units of the longest side.
+    void addGradientTo(const std::array<double, 3>& at, double* gradients);
+
   private:
+    /// Finds the cell, and has the control points around it at hand; the first that counts.
+    std::size_t find(const std::array<double, 3>& at);
+    double sum(std::size_t column, std::size_t first,
+               const std::array<std::array<double, 4>, 3>& weights) const;
+
     const SpaceLayer& mLayer;
     double mCells;
     SpaceNet::Place mBlock{};
+    std::array<double, 3> mPlace{};           // in the cell
     std::vector<std::vector<double>> mCubes;  // empty before the first place
 };
 

@@ -5,6 +5,8 @@
 #include <bandvox/core/memory.h>
 #include <bandvox/scatter/spline_volume_to_grids.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -18,7 +20,9 @@ using VectorLeaf = openvdb::Vec3STree::LeafNodeType;
 struct SampledLeaf {
     openvdb::Coord origin;
     FloatLeaf::NodeMaskType active;
-    std::vector<float> values;  // [column][voxel]; empty if none is active
+    // Of each column, and with gradients then three of each: [number][voxel]; empty if none is
+    // active.
+    std::vector<float> values;
 };
 
 /// The leaves that the cells which may have values meet.
@@ -58,36 +62,48 @@ std::vector<openvdb::Coord> leavesNear(const SplineVolumeParts& parts, double vo
 /// Samples leaves, for one thread.
 class LeafSampler {
   public:
-    LeafSampler(const SplineVolumeParts& parts, double voxelSize)
-        : mParts(parts), mVoxelSize(voxelSize), mReach(parts) {
+    LeafSampler(const SplineVolumeParts& parts, double voxelSize, bool hasGradients)
+        : mParts(parts),
+          mVoxelSize(voxelSize),
+          mColumns(parts.mean.size()),
+          mNumbers(hasGradients ? 4 * mColumns : mColumns),
+          mReach(parts) {
         for (const SpaceLayer& layer : parts.layers) mReaders.emplace_back(layer);
     }
 
     SampledLeaf sample(const openvdb::Coord& origin) {
         SampledLeaf leaf{origin, {}, {}};
-        const std::size_t columns = mParts.mean.size();
-        std::vector<double> values(columns * FloatLeaf::SIZE);
-        std::vector<double> one(columns);
+        std::vector<double> values(mNumbers * FloatLeaf::SIZE);
+        std::vector<double> one(mNumbers);
         for (openvdb::Index i = 0; i < FloatLeaf::SIZE; ++i) {
             const std::array<double, 3> at = placeOf(origin + FloatLeaf::offsetToLocalCoord(i));
             if (!mReach.covers(at)) continue;
             leaf.active.setOn(i);
             std::fill(one.begin(), one.end(), 0.0);
-            for (LayerReader& reader : mReaders) reader.addTo(at, one.data());
-            for (std::size_t c = 0; c < columns; ++c) values[c * FloatLeaf::SIZE + i] = one[c];
+            for (LayerReader& reader : mReaders) {
+                reader.addTo(at, one.data());
+                if (mNumbers > mColumns) reader.addGradientTo(at, one.data() + mColumns);
+            }
+            for (std::size_t n = 0; n < mNumbers; ++n) values[n * FloatLeaf::SIZE + i] = one[n];
         }
         if (leaf.active.isOff()) return leaf;
         for (const BumpLayer& bumps : mParts.bumps) addBumps(bumps, origin, values);
         leaf.values.resize(values.size());
         for (std::size_t k = 0; k < values.size(); ++k) {
-            const std::size_t c = k / FloatLeaf::SIZE;
+            const std::size_t n = k / FloatLeaf::SIZE;
             if (!leaf.active.isOn(static_cast<openvdb::Index>(k % FloatLeaf::SIZE))) continue;
-            leaf.values[k] = static_cast<float>(mParts.mean[c] + mParts.range[c] * values[k]);
+            leaf.values[k] = static_cast<float>(inWorld(n, values[k]));
         }
         return leaf;
     }
 
   private:
+    /// A number of a box of unit size and columns of unit range, in world units.
+    double inWorld(std::size_t n, double value) const {
+        if (n < mColumns) return mParts.mean[n] + mParts.range[n] * value;
+        return mParts.range[(n - mColumns) / 3] / mParts.longest * value;
+    }
+
     std::array<double, 3> placeOf(const openvdb::Coord& voxel) const {
         return mParts.unitPlace(voxel.asVec3d() * mVoxelSize);
     }
@@ -132,13 +148,19 @@ class LeafSampler {
         for (int x = range[0][0]; x <= range[0][1]; ++x) {
             for (int y = range[1][0]; y <= range[1][1]; ++y) {
                 for (int z = range[2][0]; z <= range[2][1]; ++z) {
-                    const double height =
-                        bumpHeight({low[0] + x * voxel - at[0], low[1] + y * voxel - at[1],
-                                    low[2] + z * voxel - at[2]},
-                                   radius);
+                    const std::array<double, 3> offset{low[0] + x * voxel - at[0],
+                                                       low[1] + y * voxel - at[1],
+                                                       low[2] + z * voxel - at[2]};
+                    const double height = bumpHeight(offset, radius);
                     const openvdb::Index i = FloatLeaf::coordToOffset(openvdb::Coord(x, y, z));
-                    for (std::size_t c = 0; c < bumps.sizes.size(); ++c) {
+                    for (std::size_t c = 0; c < mColumns; ++c) {
                         values[c * FloatLeaf::SIZE + i] += height * bumps.sizes[c][point];
+                    }
+                    if (mNumbers == mColumns) continue;
+                    const auto slope = bumpGradient(offset, radius);
+                    for (std::size_t n = 0; n < 3 * mColumns; ++n) {
+                        values[(mColumns + n) * FloatLeaf::SIZE + i] +=
+                            slope[n % 3] * bumps.sizes[n / 3][point];
                     }
                 }
             }
@@ -147,15 +169,16 @@ class LeafSampler {
 
     const SplineVolumeParts& mParts;
     double mVoxelSize;
+    std::size_t mColumns, mNumbers;
     ReachReader mReach;
     std::vector<LayerReader> mReaders;
 };
 
 std::vector<SampledLeaf> sampleLeaves(const SplineVolumeParts& parts, double voxelSize,
-                                      Progress& progress) {
+                                      bool hasGradients, Progress& progress) {
     const std::vector<openvdb::Coord> origins = leavesNear(parts, voxelSize);
     const double bytes = static_cast<double>(origins.size()) * FloatLeaf::SIZE * sizeof(float) *
-                         static_cast<double>(parts.mean.size());
+                         static_cast<double>(parts.mean.size()) * (hasGradients ? 4 : 1);
     // They exist once as they are sampled, and once in the grids.
     requireMemory(2 * bytes, "the voxels in reach of the points");
     std::vector<SampledLeaf> leaves(origins.size());
@@ -164,7 +187,7 @@ std::vector<SampledLeaf> sampleLeaves(const SplineVolumeParts& parts, double vox
     const ProgressStage stage(progress, "sampling", static_cast<std::int64_t>(pieces));
     parallelFor(static_cast<std::int64_t>(pieces), [&](std::int64_t p) {
         progress.throwIfInterrupted();
-        LeafSampler sampler(parts, voxelSize);
+        LeafSampler sampler(parts, voxelSize, hasGradients);
         const std::size_t begin = static_cast<std::size_t>(p) * kLeavesInPiece;
         for (std::size_t i = begin; i < std::min(begin + kLeavesInPiece, origins.size()); ++i) {
             leaves[i] = sampler.sample(origins[i]);
@@ -188,11 +211,12 @@ openvdb::FloatGrid::Ptr floatGrid(const std::vector<SampledLeaf>& leaves, int co
     return grid;
 }
 
-openvdb::Vec3SGrid::Ptr vectorGrid(const std::vector<SampledLeaf>& leaves,
-                                   const ColumnGrid& wanted) {
+openvdb::Vec3SGrid::Ptr vectorGrid(const std::vector<SampledLeaf>& leaves, const ColumnGrid& wanted,
+                                   int columns) {
     auto grid = openvdb::Vec3SGrid::create(openvdb::Vec3f(0));
     grid->setVectorType(wanted.type);
-    const std::size_t from = static_cast<std::size_t>(wanted.column) * FloatLeaf::SIZE;
+    const int first = wanted.isGradient ? columns + 3 * wanted.column : wanted.column;
+    const std::size_t from = static_cast<std::size_t>(first) * FloatLeaf::SIZE;
     for (const SampledLeaf& sampled : leaves) {
         if (sampled.values.empty()) continue;
         auto* const leaf = new VectorLeaf(sampled.origin, openvdb::Vec3f(0));
@@ -217,7 +241,8 @@ openvdb::GridPtrVec splineVolumeToGrids(const SplineVolume& volume,
     }
     for (const ColumnGrid& grid : grids) {
         const bool isThere = grid.column >= 0 && (grid.columns == 1 || grid.columns == 3) &&
-                             grid.column + grid.columns <= volume.columns();
+                             grid.column + grid.columns <= volume.columns() &&
+                             (grid.columns == 1 || !grid.isGradient);
         if (isThere) continue;
         throw Error(ErrorKind::Usage, "a grid takes " + std::to_string(grid.columns) +
                                           " columns from " + std::to_string(grid.column) +
@@ -234,7 +259,10 @@ openvdb::GridPtrVec splineVolumeToGrids(const SplineVolume& volume,
         throw Error(ErrorKind::Usage, "voxels of side " + std::to_string(voxelSize) +
                                           " have indices beyond 2^28; expected larger ones");
     }
-    const std::vector<SampledLeaf> leaves = sampleLeaves(volume.parts(), voxelSize, progress);
+    const bool hasGradients = std::any_of(grids.begin(), grids.end(),
+                                          [](const ColumnGrid& grid) { return grid.isGradient; });
+    const std::vector<SampledLeaf> leaves =
+        sampleLeaves(volume.parts(), voxelSize, hasGradients, progress);
     const bool isEmpty = std::all_of(leaves.begin(), leaves.end(),
                                      [](const SampledLeaf& leaf) { return leaf.values.empty(); });
     if (isEmpty) {
@@ -245,10 +273,10 @@ openvdb::GridPtrVec splineVolumeToGrids(const SplineVolume& volume,
     openvdb::GridPtrVec result;
     for (const ColumnGrid& wanted : grids) {
         openvdb::GridBase::Ptr grid;
-        if (wanted.columns == 1) {
+        if (wanted.columns == 1 && !wanted.isGradient) {
             grid = floatGrid(leaves, wanted.column);
         } else {
-            grid = vectorGrid(leaves, wanted);
+            grid = vectorGrid(leaves, wanted, volume.columns());
         }
         grid->setName(wanted.name);
         grid->setTransform(openvdb::math::Transform::createLinearTransform(voxelSize));

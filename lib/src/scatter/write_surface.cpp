@@ -6,6 +6,7 @@
 #include <charconv>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace bandvox {
@@ -57,6 +58,25 @@ double along(double from, double to, int i, int count) {
     return from + (to - from) * i / (count - 1);
 }
 
+/// Adds samples, [x][y], to a picture that is seen from above.
+void appendPlanes(Image& image, const std::vector<std::vector<double>>& numbers,
+                  SurfaceQuantity quantity) {
+    const auto height = static_cast<std::size_t>(image.height);
+    const auto width = static_cast<std::size_t>(image.width);
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+        ImagePlane plane{nameOf(quantity), {}};
+        if (numbers.size() > 1) plane.name += std::array{".X", ".Y", ".Z"}[n];
+        plane.values.reserve(width * height);
+        for (std::size_t row = 0; row < height; ++row) {
+            for (std::size_t i = 0; i < width; ++i) {
+                plane.values.push_back(
+                    static_cast<float>(numbers[n][i * height + height - 1 - row]));
+            }
+        }
+        image.planes.push_back(std::move(plane));
+    }
+}
+
 }  // namespace
 
 void writeBezierPatches(AtomicFile& file, const BsplineSurface& surface, int column,
@@ -87,11 +107,13 @@ void writeBezierPatches(AtomicFile& file, const BsplineSurface& surface, int col
 }
 
 void writeSamples(AtomicFile& file, const BsplineSurface& surface, std::array<int, 2> samples,
-                  Progress& progress) {
+                  const std::vector<SurfaceQuantity>& quantities, Progress& progress) {
+    int numbers = 0;
+    for (const SurfaceQuantity quantity : quantities) numbers += numbersOf(quantity);
     std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (";
     header += std::to_string(samples[0]) + ", ";
     header += std::to_string(samples[1]) + ", ";
-    header += std::to_string(surface.columns()) + "), }";
+    header += std::to_string(surface.columns() * numbers) + "), }";
     // What comes before the numbers fills whole blocks of 64 bytes, and ends in a newline.
     constexpr std::size_t kBlock = 64;
     constexpr std::size_t kStart = 10;
@@ -104,9 +126,12 @@ void writeSamples(AtomicFile& file, const BsplineSurface& surface, std::array<in
     std::ofstream stream = file.open();
     writeText(stream, text, file);
     std::vector<std::vector<double>> columns;
-    columns.reserve(static_cast<std::size_t>(surface.columns()));
     for (int c = 0; c < surface.columns(); ++c) {
-        columns.push_back(surface.sample({samples[0], samples[1], c}));
+        for (const SurfaceQuantity quantity : quantities) {
+            for (auto& made : sampleQuantity(surface, samples, c, quantity)) {
+                columns.push_back(std::move(made));
+            }
+        }
     }
     const auto row = static_cast<std::size_t>(samples[1]);
     for (std::size_t i = 0; i < static_cast<std::size_t>(samples[0]); ++i) {
@@ -144,7 +169,7 @@ SurfaceMesh heightFieldMesh(const BsplineSurface& surface, std::array<int, 2> sa
 }
 
 Image heightFieldImage(const BsplineSurface& surface, std::array<int, 2> samples, int column,
-                       int red) {
+                       int red, const std::vector<SurfaceQuantity>& quantities) {
     const SampledField field(surface, samples, column, red);
     const Rectangle& r = surface.rectangle();
     Image image;
@@ -165,6 +190,9 @@ Image heightFieldImage(const BsplineSurface& surface, std::array<int, 2> samples
                                   {static_cast<float>(along(r.x0, r.x1, i, samples[0])),
                                    static_cast<float>(along(r.y0, r.y1, j, samples[1])), height});
         }
+    }
+    for (const SurfaceQuantity quantity : quantities) {
+        appendPlanes(image, sampleQuantity(surface, samples, column, quantity), quantity);
     }
     return image;
 }

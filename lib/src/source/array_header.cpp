@@ -36,13 +36,43 @@ const TypeEntry& entryOf(ArrayType type) {
     return kTypes[static_cast<std::size_t>(type)];
 }
 
-template <typename Stored>
-void convertAll(const char* bytes, std::span<float> values, bool swaps) {
+template <typename Stored, typename Number>
+void convertAll(const char* bytes, std::span<Number> values, bool swaps) {
     for (std::size_t i = 0; i < values.size(); ++i) {
         std::array<char, sizeof(Stored)> raw;
         std::memcpy(raw.data(), bytes + i * sizeof(Stored), sizeof(Stored));
         if (swaps) std::reverse(raw.begin(), raw.end());
-        values[i] = static_cast<float>(std::bit_cast<Stored>(raw));
+        values[i] = static_cast<Number>(std::bit_cast<Stored>(raw));
+    }
+}
+
+template <typename Number>
+void toNumbers(const char* bytes, std::span<Number> values, ArrayType type, bool bigEndian) {
+    const bool swaps = bigEndian != (std::endian::native == std::endian::big);
+    switch (type) {
+        case ArrayType::Bool:
+        case ArrayType::UInt8:
+            return convertAll<std::uint8_t>(bytes, values, swaps);
+        case ArrayType::Int8:
+            return convertAll<std::int8_t>(bytes, values, swaps);
+        case ArrayType::Int16:
+            return convertAll<std::int16_t>(bytes, values, swaps);
+        case ArrayType::UInt16:
+            return convertAll<std::uint16_t>(bytes, values, swaps);
+        case ArrayType::Int32:
+            return convertAll<std::int32_t>(bytes, values, swaps);
+        case ArrayType::UInt32:
+            return convertAll<std::uint32_t>(bytes, values, swaps);
+        case ArrayType::Int64:
+            return convertAll<std::int64_t>(bytes, values, swaps);
+        case ArrayType::UInt64:
+            return convertAll<std::uint64_t>(bytes, values, swaps);
+        case ArrayType::Half:
+            return convertAll<Imath::half>(bytes, values, swaps);
+        case ArrayType::Float:
+            return convertAll<float>(bytes, values, swaps);
+        case ArrayType::Double:
+            return convertAll<double>(bytes, values, swaps);
     }
 }
 
@@ -104,32 +134,11 @@ openvdb::Coord arraySize(const std::filesystem::path& path, const std::vector<do
 }
 
 void toFloats(const char* bytes, std::span<float> values, ArrayType type, bool bigEndian) {
-    const bool swaps = bigEndian != (std::endian::native == std::endian::big);
-    switch (type) {
-        case ArrayType::Bool:
-        case ArrayType::UInt8:
-            return convertAll<std::uint8_t>(bytes, values, swaps);
-        case ArrayType::Int8:
-            return convertAll<std::int8_t>(bytes, values, swaps);
-        case ArrayType::Int16:
-            return convertAll<std::int16_t>(bytes, values, swaps);
-        case ArrayType::UInt16:
-            return convertAll<std::uint16_t>(bytes, values, swaps);
-        case ArrayType::Int32:
-            return convertAll<std::int32_t>(bytes, values, swaps);
-        case ArrayType::UInt32:
-            return convertAll<std::uint32_t>(bytes, values, swaps);
-        case ArrayType::Int64:
-            return convertAll<std::int64_t>(bytes, values, swaps);
-        case ArrayType::UInt64:
-            return convertAll<std::uint64_t>(bytes, values, swaps);
-        case ArrayType::Half:
-            return convertAll<Imath::half>(bytes, values, swaps);
-        case ArrayType::Float:
-            return convertAll<float>(bytes, values, swaps);
-        case ArrayType::Double:
-            return convertAll<double>(bytes, values, swaps);
-    }
+    toNumbers(bytes, values, type, bigEndian);
+}
+
+void toDoubles(const char* bytes, std::span<double> values, ArrayType type, bool bigEndian) {
+    toNumbers(bytes, values, type, bigEndian);
 }
 
 }  // namespace bandvox

@@ -54,12 +54,26 @@ std::vector<double> numbersIn(const std::filesystem::path& path, std::string_vie
 /// Sizes of an array. Throws Error(ErrorKind::Input) for such as cannot be.
 openvdb::Coord arraySize(const std::filesystem::path& path, const std::vector<double>& sizes);
 
+/// What the header of a .npy file says.
+struct NpyLayout {
+    ArrayType type = ArrayType::Double;
+    bool bigEndian = false;
+    bool isFortran = false;     ///< the first index runs fastest
+    std::vector<double> sizes;  ///< whole numbers, as there are in the file
+};
+
+/// Reads that of an array with so many indices; the stream is then behind it. Throws
+/// Error(ErrorKind::Input).
+NpyLayout readNpyLayout(const std::filesystem::path& path, std::istream& stream,
+                        std::size_t dimensions);
+
 // Read the header of each format; the stream is then behind it.
 ArrayHeader readNpyHeader(const std::filesystem::path& path, std::istream& stream);
 ArrayHeader readNrrdHeader(const std::filesystem::path& path, std::istream& stream);
 ArrayHeader readMetaImageHeader(const std::filesystem::path& path, std::istream& stream);
 
-/// Turns so many stored numbers into floats.
+/// Turns so many stored numbers into floats, or doubles.
 void toFloats(const char* bytes, std::span<float> values, ArrayType type, bool bigEndian);
+void toDoubles(const char* bytes, std::span<double> values, ArrayType type, bool bigEndian);
 
 }  // namespace bandvox

@@ -1,3 +1,4 @@
+#include "core/letter_case.h"
 #include "core/words.h"
 #include "source/array_header.h"
 #include "source/dicom_series.h"
@@ -29,13 +30,6 @@ namespace bandvox {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lowerExtension(const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 // Of the bytes of an array's values, those in each of its files.
 std::int64_t bytesInFile(const ArrayHeader& header) {

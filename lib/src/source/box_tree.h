@@ -8,8 +8,8 @@
 
 namespace bandvox {
 
-/// A bounding volume hierarchy: finds the boxes of a list that a line parallel to x meets, or that
-/// hold a point.
+/// A bounding volume hierarchy: finds the boxes of a list that a line parallel to x meets, that
+/// hold a point, or that meet a box.
 class BoxTree {
   public:
     explicit BoxTree(std::vector<openvdb::BBoxd> boxes);
@@ -29,6 +29,12 @@ class BoxTree {
     template <typename Visit>
     void visitAround(const openvdb::Vec3d& point, const Visit& visit) const {
         visitWhere([&point](const openvdb::BBoxd& box) { return box.isInside(point); }, visit);
+    }
+
+    /// Calls visit(i) for each box i that meets or touches a box.
+    template <typename Visit>
+    void visitMeeting(const openvdb::BBoxd& box, const Visit& visit) const {
+        visitWhere([&box](const openvdb::BBoxd& other) { return other.hasOverlap(box); }, visit);
     }
 
   private:

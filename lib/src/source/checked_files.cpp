@@ -1,5 +1,6 @@
 #include "source/checked_files.h"
 
+#include "core/letter_case.h"
 #include "core/rehearsal.h"
 
 #include <bandvox/core/progress.h>
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdint>
 #include <string_view>
 #include <system_error>
@@ -65,9 +65,7 @@ void checkMaterials(const FileContents& file) {
         begin = end + 1;
         if (!isStatement) continue;
         if (line.starts_with("newmtl")) return;
-        std::string word(line.substr(0, 4));
-        std::transform(word.begin(), word.end(), word.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        const std::string word = inLowerCase(std::string(line.substr(0, 4)));
         const bool isTexture =
             std::find(kTextures.begin(), kTextures.end(), word) != kTextures.end();
         if (isTexture || line.starts_with(kAnisotropy)) {

@@ -1,5 +1,6 @@
 #include "source/mesh_import.h"
 
+#include "core/letter_case.h"
 #include "core/rehearsal.h"
 #include "core/words.h"
 #include "source/checked_files.h"
@@ -11,7 +12,6 @@
 #include <assimp/postprocess.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -180,13 +180,6 @@ double appendMesh(const MeshInstance& instance, const fs::path& path, Mesh& mesh
 }
 
 }  // namespace
-
-std::string lowerExtension(const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 void MeshImport::read(Progress& progress, std::size_t triangles) {
     // It takes ownership of both.

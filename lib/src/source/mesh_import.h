@@ -13,9 +13,6 @@
 
 namespace bandvox {
 
-/// The extension of a path, in lower case with its dot.
-std::string lowerExtension(const std::filesystem::path& path);
-
 /// A mesh of a scene at one of the places where nodes put it.
 struct MeshInstance {
     using Transform = aiMatrix4x4t<double>;

@@ -1,5 +1,6 @@
 #include "source/mesh_materials.h"
 
+#include "core/letter_case.h"
 #include "source/mesh_import.h"
 #include "source/read_texture.h"
 #include "source/srgb.h"

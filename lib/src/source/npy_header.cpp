@@ -70,9 +70,9 @@ std::string readDictionary(const std::filesystem::path& path, std::istream& stre
 
 }  // namespace
 
-ArrayHeader readNpyHeader(const std::filesystem::path& path, std::istream& stream) {
+NpyLayout readNpyLayout(const std::filesystem::path& path, std::istream& stream,
+                        std::size_t dimensions) {
     const std::string text = readDictionary(path, stream);
-    ArrayHeader header;
     const std::string_view descr = valueOf(path, text, "descr");
     // Quote, byte order, type.
     const std::string code(descr.substr(0, descr.find_first_of(",}", 1)));
@@ -84,18 +84,26 @@ ArrayHeader readNpyHeader(const std::filesystem::path& path, std::istream& strea
         failArray(path, "its values are of type " + code.substr(0, 40) +
                             "; expected bool, whole numbers or floats of 1 to 8 bytes");
     }
-    header.type = *type;
-    header.bigEndian = code[1] == '>';
-    const bool fortran = valueOf(path, text, "fortran_order").starts_with("True");
-
+    NpyLayout layout;
+    layout.type = *type;
+    layout.bigEndian = code[1] == '>';
+    layout.isFortran = valueOf(path, text, "fortran_order").starts_with("True");
     std::string_view shape = valueOf(path, text, "shape");
     const std::size_t close = shape.find(')');
     if (!shape.starts_with('(') || close == std::string_view::npos) {
         failArray(path, "its header has no shape");
     }
-    const std::vector<double> sizes = numbersIn(path, shape.substr(0, close + 1), 3, "sizes");
-    header.info.size = arraySize(path, sizes);
-    header.info.axes = fortran ? std::array{0, 1, 2} : std::array{2, 1, 0};
+    layout.sizes = numbersIn(path, shape.substr(0, close + 1), dimensions, "sizes");
+    return layout;
+}
+
+ArrayHeader readNpyHeader(const std::filesystem::path& path, std::istream& stream) {
+    const NpyLayout layout = readNpyLayout(path, stream, 3);
+    ArrayHeader header;
+    header.type = layout.type;
+    header.bigEndian = layout.bigEndian;
+    header.info.size = arraySize(path, layout.sizes);
+    header.info.axes = layout.isFortran ? std::array{0, 1, 2} : std::array{2, 1, 0};
     header.info.toWorld = openvdb::Mat4d::identity();
     header.files = {path};
     header.skipBytes = stream.tellg();

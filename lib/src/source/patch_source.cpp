@@ -19,6 +19,9 @@ constexpr double kVoxelsPerRadian = 1.0;
 /// Halvings after which a cell is taken as it is.
 constexpr int kDeepestCellSplit = 64;
 
+/// Longest side of a cell that others may cut, voxels.
+constexpr double kCutCell = 1.0;
+
 /// What stays the same while a patch is being split.
 struct PatchSampling {
     const Patch& patch;
@@ -26,6 +29,7 @@ struct PatchSampling {
     const SurfaceQuadrature& quadrature;
     RegionClip clip;
     std::vector<SurfaceSample>& samples;
+    const PatchTrim* trim = nullptr;  ///< null where all of the patch counts
 };
 
 /// How large a cell is for quadrature along each parameter: voxels, turning included.
@@ -95,6 +99,17 @@ void applyRules(int uRule, int vRule, const ParameterCell& cell, const PatchSamp
     }
 }
 
+/// Of a cell that others may cut.
+void applyTrimmedRule(const ParameterCell& cell, const PatchSampling& sampling) {
+    const double lengthScale = 1.0 / sampling.voxelSize;
+    for (const TrimmedPoint& t : trimmedRule(*sampling.trim, sampling.patch, cell)) {
+        const PatchPoint p = sampling.patch.at(t.u, t.v);
+        sampling.clip.append(p.position * lengthScale,
+                             (t.weight * lengthScale * lengthScale) * p.du.cross(p.dv),
+                             sampling.samples);
+    }
+}
+
 void sampleCell(const ParameterCell& cell, int depth, const PatchSampling& sampling) {
     // Leave out what the region cannot see; this changes no point that it can.
     const openvdb::BBoxd box = sampling.patch.bounds(cell);
@@ -102,10 +117,28 @@ void sampleCell(const ParameterCell& cell, int depth, const PatchSampling& sampl
         return;
     }
 
+    // See what a union leaves of it.
+    if (sampling.trim != nullptr) {
+        const PatchTrim::Share share = sampling.trim->share(sampling.patch, cell);
+        if (share == PatchTrim::Share::None) return;
+        if (share == PatchTrim::Share::All) {
+            PatchSampling whole = sampling;
+            whole.trim = nullptr;
+            sampleCell(cell, depth, whole);
+            return;
+        }
+    }
+
     const CellSize size = measure(cell, sampling);
+    if (sampling.trim != nullptr && std::max(size.u, size.v) <= kCutCell) {
+        applyTrimmedRule(cell, sampling);
+        return;
+    }
     const int uRule = lowestIntervalRule(sampling.quadrature, size.u);
     const int vRule = lowestIntervalRule(sampling.quadrature, size.v);
-    if ((uRule < kIntervalRules && vRule < kIntervalRules) || depth == kDeepestCellSplit) {
+    const bool isAccurate =
+        sampling.trim == nullptr && uRule < kIntervalRules && vRule < kIntervalRules;
+    if (isAccurate || depth == kDeepestCellSplit) {
         applyRules(std::min(uRule, kIntervalRules - 1), std::min(vRule, kIntervalRules - 1), cell,
                    sampling);
         return;
@@ -125,6 +158,11 @@ void sampleCell(const ParameterCell& cell, int depth, const PatchSampling& sampl
 
 }  // namespace
 
+void samplePatch(const Patch& patch, const PatchTrim* trim, const SamplingRegion& region,
+                 const SurfaceQuadrature& quadrature, std::vector<SurfaceSample>& samples) {
+    sampleCell({}, 0, {patch, region.voxelSize, quadrature, RegionClip(region), samples, trim});
+}
+
 PatchSource::PatchSource(std::string name, PatchList patches, double volume, double area)
     : mName(std::move(name)), mPatches(std::move(patches)), mVolume(volume), mArea(area) {
     for (const auto& patch : mPatches) mBounds.expand(patch->bounds({}));
@@ -134,7 +172,7 @@ void PatchSource::sampleElement(std::size_t i, const SamplingRegion& region,
                                 const SurfaceQuadrature& quadrature,
                                 std::vector<SurfaceSample>& samples) const {
     requireUsefulLength(quadrature.cellSide.back(), "cell side");
-    sampleCell({}, 0, {*mPatches[i], region.voxelSize, quadrature, RegionClip(region), samples});
+    samplePatch(*mPatches[i], nullptr, region, quadrature, samples);
 }
 
 }  // namespace bandvox

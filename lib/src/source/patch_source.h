@@ -1,12 +1,18 @@
 #pragma once
 
 #include "source/patch.h"
+#include "source/patch_trim.h"
 
 #include <bandvox/source/boundary_source.h>
 
 #include <string>
 
 namespace bandvox {
+
+/// Appends the quadrature points of what `trim` leaves of a patch, all of it if null, as
+/// BoundarySource::sampleElement does.
+void samplePatch(const Patch& patch, const PatchTrim* trim, const SamplingRegion& region,
+                 const SurfaceQuadrature& quadrature, std::vector<SurfaceSample>& samples);
 
 /// A closed surface made of smooth patches, sampled as it is, without tessellation.
 class PatchSource final : public BoundarySource {

@@ -1,6 +1,6 @@
+#include "core/letter_case.h"
 #include "core/words.h"
 #include "source/file_integrity.h"
-#include "source/mesh_import.h"
 #include "source/ply_header.h"
 #include "source/point_columns.h"
 
@@ -8,7 +8,6 @@
 #include <bandvox/source/point_cloud.h>
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <system_error>
 
@@ -79,9 +78,7 @@ PointCloud readPointCloud(const fs::path& path, Progress& progress) {
 }
 
 std::optional<NamedValue> pointValueOfName(std::string_view name) {
-    std::string lower(name);
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string lower = inLowerCase(std::string(name));
     for (std::size_t i = 0; i < kPointValues; ++i) {
         if (lower == kPointValueNames[i]) return NamedValue{i, 1};
     }

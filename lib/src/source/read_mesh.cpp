@@ -1,3 +1,4 @@
+#include "core/letter_case.h"
 #include "source/mesh_import.h"
 
 #include <bandvox/source/read_mesh.h>

@@ -1,23 +1,15 @@
 #include "source/read_patches.h"
 
+#include "core/letter_case.h"
 #include "source/text_lines.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/source/read_patches.h>
 
-#include <algorithm>
-#include <cctype>
 #include <string>
 
 namespace bandvox {
 namespace {
-
-std::string patchExtension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 // Goes through the numbers of a text, wherever its lines end.
 class NumberWalk {
@@ -61,7 +53,7 @@ int degreeFrom(NumberWalk& numbers, const std::string& what) {
 }  // namespace
 
 bool mayHoldPatches(const std::filesystem::path& path) {
-    const std::string extension = patchExtension(path);
+    const std::string extension = lowerExtension(path);
     return extension == ".bpt" || extension == ".obj";
 }
 
@@ -106,7 +98,7 @@ PatchModel readBptPatches(const FileContents& file, Progress& progress) {
 }
 
 PatchModel readPatches(const std::filesystem::path& path, Progress& progress) {
-    const std::string extension = patchExtension(path);
+    const std::string extension = lowerExtension(path);
     if (extension == ".bpt") return readBptPatches(readFile(path), progress);
     if (extension == ".obj") return readObjPatches(readFile(path), progress);
     throw Error(ErrorKind::Input, "\"" + path.string() +

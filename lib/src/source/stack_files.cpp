@@ -1,5 +1,6 @@
 #include "source/stack_files.h"
 
+#include "core/letter_case.h"
 #include "core/number_pattern.h"
 #include "core/words.h"
 #include "source/array_header.h"
@@ -30,16 +31,9 @@ constexpr std::array<std::string_view, 24> kImageExtensions{
     ".j2k", ".pgm",  ".ppm", ".pnm",  ".pbm", ".pfm", ".dpx",  ".tga",
     ".psd", ".webp", ".sgi", ".fits", ".cin", ".iff", ".ico",  ".hdr"};
 
-std::string extensionInLowerCase(const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
-
 // One name for all extensions of a kind; empty if it is no image's.
 std::string imageKind(const fs::path& path) {
-    std::string extension = extensionInLowerCase(path);
+    std::string extension = lowerExtension(path);
     if (std::find(kImageExtensions.begin(), kImageExtensions.end(), extension) ==
         kImageExtensions.end()) {
         return {};
@@ -50,7 +44,7 @@ std::string imageKind(const fs::path& path) {
 }
 
 bool hasDicomName(const fs::path& path) {
-    const std::string extension = extensionInLowerCase(path);
+    const std::string extension = lowerExtension(path);
     return extension == ".dcm" || extension == ".dicom" || extension == ".ima";
 }
 

@@ -18,6 +18,12 @@ class AtomicFile;
 /// Something that is said of a picture. Matrices act on rows, as OpenVDB's and OpenEXR's do.
 using ImageAttribute = std::variant<std::string, int, double, openvdb::math::Mat4d>;
 
+/// Numbers of any kind, one for each pixel.
+struct ImagePlane {
+    std::string name;           ///< of the channel
+    std::vector<float> values;  ///< [height][width]
+};
+
 /// A picture, and what was seen at each of its pixels. Rows from the top.
 struct Image {
     int width = 0;
@@ -30,6 +36,7 @@ struct Image {
     std::vector<float> depth;     ///< [height][width] world units along the view; inf where nothing
     std::vector<float> normal;    ///< [height][width][3] world, unit; 0 where nothing
     std::vector<float> position;  ///< [height][width][3] world; 0 where nothing
+    std::vector<ImagePlane> planes;  ///< what else there is; written to an .exr, as floats
     std::vector<std::pair<std::string, ImageAttribute>> metadata;
 };
 

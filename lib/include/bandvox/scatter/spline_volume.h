@@ -31,6 +31,9 @@ class SplineVolume {
     /// The value at a place, world units. What it is where no point is within reach is not said.
     double value(const openvdb::Vec3d& place, int column = 0) const;
 
+    /// The gradient there, per world unit.
+    openvdb::Vec3d gradient(const openvdb::Vec3d& place, int column = 0) const;
+
     const SplineVolumeParts& parts() const { return *mParts; }
 
   private:

@@ -12,8 +12,10 @@ namespace bandvox {
 struct ColumnGrid {
     std::string name;
     int column = 0;   ///< the first of them
-    int columns = 1;  ///< 1: a grid of floats; 3: of vectors of floats
+    int columns = 1;  ///< 1: a grid of floats, or a gradient; 3: of vectors of floats
     openvdb::VecType type = openvdb::VEC_INVARIANT;  ///< of the vectors
+    /// The gradient of one column, per world unit, as vectors.
+    bool isGradient = false;
 };
 
 /// Samples a volume on a lattice: the centres of voxels are at whole multiples of `voxelSize`,

@@ -5,8 +5,10 @@
 #include <bandvox/mesh/surface_mesh.h>
 #include <bandvox/render/image.h>
 #include <bandvox/scatter/bspline_surface.h>
+#include <bandvox/scatter/surface_quantity.h>
 
 #include <array>
+#include <vector>
 
 namespace bandvox {
 
@@ -16,8 +18,10 @@ namespace bandvox {
 void writeBezierPatches(AtomicFile& file, const BsplineSurface& surface, int column = 0,
                         Progress& progress = silentProgress());
 
-/// Writes samples of all columns on a grid as a NumPy array of doubles, [x][y][column].
+/// Writes samples of all columns on a grid as a NumPy array of doubles, [x][y][number]: for each
+/// column the quantities in the order that is given, three numbers for a normal.
 void writeSamples(AtomicFile& file, const BsplineSurface& surface, std::array<int, 2> samples,
+                  const std::vector<SurfaceQuantity>& quantities = {SurfaceQuantity::Value},
                   Progress& progress = silentProgress());
 
 /// The height field of a column as two triangles to each cell of a grid of samples, with the
@@ -26,8 +30,8 @@ SurfaceMesh heightFieldMesh(const BsplineSurface& surface, std::array<int, 2> sa
                             int column = 0, int red = -1);
 
 /// The same as a picture seen from above, x to the right and y up: depth is the height, and normals
-/// and positions are the surface's.
+/// and positions are the surface's. `quantities` of the column are channels of their names.
 Image heightFieldImage(const BsplineSurface& surface, std::array<int, 2> samples, int column = 0,
-                       int red = -1);
+                       int red = -1, const std::vector<SurfaceQuantity>& quantities = {});
 
 }  // namespace bandvox
