@@ -19,6 +19,7 @@
 #include <bandvox/bandlimit/soup_to_density.h>
 #include <bandvox/source/shapes.h>
 
+#include <filesystem>
 #include <vector>
 
 namespace bandvox::app {
@@ -126,6 +127,8 @@ const CommandTable& convertTable() {
                 {"bandvox convert spot.vdb -o spot.ply", "The surface of that, with its colours."},
                 {"bandvox convert scan/ -o scan.vdb --spacing 0.05",
                  "A folder of images of slices, 0.05 world units from voxel to voxel."},
+                {"bandvox convert bunny.obj -o bunny.usda",
+                 "bunny.vdb, and a USD volume that refers to it."},
                 {"bandvox convert bunny.vdb -o slices.####.png",
                  "The density as images, 16 bits a pixel."},
                 {"bandvox convert part.stl -o part.vdb --voxel-size 0.1 --strict",
@@ -142,6 +145,20 @@ const CommandTable& convertTable() {
 
 void runConvert(const CommandLine& given) {
     const CommandLine line = withLikedSettings(given);
+    const std::filesystem::path output = line.text("output").value_or("");
+    if (extensionOf(output) == ".usda") {
+        refuseOptions(line, {"frames", "keep-going", "skip-existing"}, "with a .usda output");
+        if (asksForFrames(line)) {
+            throw Error(ErrorKind::Usage, "a .usda output is of one volume, and '" +
+                                              line.positional(0) +
+                                              "' stands for many files; expected one of them");
+        }
+        const CommandLine volume = line.withFiles(
+            line.positional(0), std::filesystem::path(output).replace_extension(".vdb").string());
+        CommandRun run(volume);
+        ConvertJob job(run, volume, output);
+        return convertOne(job);
+    }
     if (asksForFrames(line)) return convertFrames(line);
     CommandRun run(line);
     ConvertJob job(run, line);

@@ -6,6 +6,7 @@
 #include "words.h"
 
 #include <bandvox/core/sha256.h>
+#include <bandvox/grid/write_usd_volume.h>
 #include <bandvox/mesh/write_mesh.h>
 #include <bandvox/source/shapes.h>
 
@@ -133,10 +134,25 @@ bool ConvertJob::begin() {
     return false;
 }
 
+ConvertJob::ConvertJob(CommandRun& run, const CommandLine& line, const fs::path& usd)
+    : mRun(run), mLine(line) {
+    if (!usd.empty()) mUsd.emplace(usd);
+}
+
 void ConvertJob::writeVolume(AtomicFile& output, const openvdb::GridCPtrVec& grids,
-                             const VdbWriteOptions& options) const {
+                             const VdbWriteOptions& options) {
     const openvdb::GridCPtrVec written = stamped(grids, mStamp);
-    mRun.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, written, options); });
+    // The volume gets its name first: nothing ever refers to one that is not there.
+    mRun.writeOutput(output, [&](AtomicFile& file) {
+        writeVdb(file, written, options);
+        if (!mUsd) return;
+        writeUsdVolume(*mUsd, file.target().filename().string(), written, options.half);
+        mUsd->complete();
+    });
+    if (!mUsd) return;
+    mUsd->commit();
+    mRun.say("wrote    " + mUsd->target().string() + ", which refers to " +
+             output.target().filename().string());
 }
 
 std::optional<std::string> whyToRedo(const std::string& output, const ConvertStamp& stamp,

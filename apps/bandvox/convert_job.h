@@ -4,10 +4,12 @@
 #include "command_run.h"
 #include "convert_stamp.h"
 
+#include <bandvox/core/atomic_file.h>
 #include <bandvox/grid/density_grid.h>
 
 #include <openvdb/openvdb.h>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -16,7 +18,9 @@ namespace bandvox::app {
 /// One input that becomes one output.
 class ConvertJob {
   public:
-    ConvertJob(CommandRun& run, const CommandLine& line) : mRun(run), mLine(line) {}
+    /// `usd`: a .usda file that is to refer to the .vdb output, which lies in the same folder;
+    /// empty for none. Throws Error(ErrorKind::Runtime) if it cannot be written.
+    ConvertJob(CommandRun& run, const CommandLine& line, const std::filesystem::path& usd = {});
 
     CommandRun& run() const { return mRun; }
     const CommandLine& line() const { return mLine; }
@@ -25,9 +29,10 @@ class ConvertJob {
     /// to be done, because of --skip-existing. Throws Error(ErrorKind::Interrupted).
     bool begin();
 
-    /// Writes grids that say how they were made, as CommandRun::writeOutput does.
+    /// Writes grids that say how they were made, as CommandRun::writeOutput does, and the file that
+    /// refers to them.
     void writeVolume(AtomicFile& output, const openvdb::GridCPtrVec& grids,
-                     const VdbWriteOptions& options) const;
+                     const VdbWriteOptions& options);
 
     /// What the output says of how it was made. After begin().
     const ConvertStamp& stamp() const { return mStamp; }
@@ -38,6 +43,7 @@ class ConvertJob {
     CommandRun& mRun;
     const CommandLine& mLine;
     ConvertStamp mStamp;
+    std::optional<AtomicFile> mUsd;
 };
 
 /// Why a file that is there has to be made again: it is not whole, or was made with other settings

@@ -55,7 +55,9 @@ OptionEntry meshOrVdbOutputEntry() {
         'o',
         "FILE",
         "",
-        "The .vdb file to write, stdout.vdb is the standard output; or a mesh of the surface (" +
+        "The .vdb file to write, stdout.vdb is the standard output; a .usda file, which refers to "
+        "a "
+        ".vdb file of its name that is written beside it; or a mesh of the surface (" +
             joined(writableMeshExtensions(), " ") +
             "), an array (.npy .nrrd .nhdr .mha .mhd), or images of slices (out.####.png, .exr or "
             ".tif; one .tif). Needed.",

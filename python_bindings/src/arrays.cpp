@@ -39,7 +39,14 @@ std::string described(const py::array& array) {
         if (axis > 0) text += ", ";
         text += std::to_string(array.shape(axis));
     }
+    if (array.ndim() == 1) text += ',';
     return text + ") of " + py::str(array.dtype()).cast<std::string>();
+}
+
+py::array numericArray(const py::handle& object, const char* what, const std::string& expected) {
+    py::array given = arrayOf(object, what, expected);
+    if (!isNumeric(given)) refuse(what, described(given), expected);
+    return given;
 }
 
 std::vector<openvdb::Vec3d> vectorsOf(const py::handle& object, const char* what) {

@@ -13,6 +13,11 @@ namespace bandvox::python {
 /// The shape and the type of an array, as in "(3, 4) of float64".
 std::string described(const pybind11::array& array);
 
+/// An array of numbers, of any type and shape. Throws Error(ErrorKind::Usage) that says what was
+/// found and `expected`.
+pybind11::array numericArray(const pybind11::handle& object, const char* what,
+                             const std::string& expected);
+
 /// Rows of three numbers, (n, 3), of any type that is one. Throws Error(ErrorKind::Usage) that says
 /// `what` they are and what was found.
 std::vector<openvdb::Vec3d> vectorsOf(const pybind11::handle& object, const char* what);

@@ -7,15 +7,14 @@
 #include "errors.h"
 #include "grid_object.h"
 #include "mesh_object.h"
+#include "solid_mesh.h"
 
 #include <bandvox/bandlimit/field_to_density.h>
 #include <bandvox/bandlimit/soup_to_density.h>
 #include <bandvox/bandlimit/surface_to_density.h>
-#include <bandvox/source/close_mesh.h>
 #include <bandvox/source/mesh_source.h>
 #include <bandvox/source/read_mesh.h>
 #include <bandvox/source/shapes.h>
-#include <bandvox/source/unite_shells.h>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -44,14 +43,8 @@ DensityResult densityOfMesh(const std::string& name, Mesh mesh, const BandlimitR
     const Capping capping = request.route == "exact"     ? Capping::All
                             : request.route == "winding" ? Capping::None
                                                          : Capping::Sensible;
-    ClosedMesh closed = closeMesh(std::move(mesh), {.capping = capping}, progress);
-    std::vector<std::string> warnings = closed.report.warnings;
-    if (request.isUnion && !closed.mesh.triangles.empty()) {
-        UnitedMesh united = uniteShells(std::move(closed.mesh), progress);
-        closed.mesh = std::move(united.mesh);
-        warnings.insert(warnings.end(), united.report.warnings.begin(),
-                        united.report.warnings.end());
-    }
+    SolidMesh solid = solidOf(std::move(mesh), capping, request.isUnion, progress);
+    ClosedMesh& closed = solid.closed;
     DensityResult result;
     if (closed.soup.triangles.empty()) {
         result =
@@ -65,7 +58,7 @@ DensityResult densityOfMesh(const std::string& name, Mesh mesh, const BandlimitR
     }
     result.metadata.holesCapped = static_cast<int>(closed.report.holes.size());
     setDensityMetadata(*result.grid, result.metadata);
-    result.warnings.insert(result.warnings.begin(), warnings.begin(), warnings.end());
+    result.warnings.insert(result.warnings.begin(), solid.warnings.begin(), solid.warnings.end());
     return result;
 }
 
@@ -108,17 +101,8 @@ py::object ofMesh(const MeshObject& mesh, const BandlimitRequest& request) {
 }
 
 py::object ofFunction(const py::object& function, const BandlimitRequest& request) {
-    if (request.bounds.is_none()) {
-        throw Error(ErrorKind::Usage,
-                    "a function needs bounds; expected the lowest and the highest place where it "
-                    "is not 0, as ((-1, -1, -1), (1, 1, 1))");
-    }
-    const auto corners = vectorsOf(request.bounds, "bounds");
-    if (corners.size() != 2) {
-        throw Error(ErrorKind::Usage, "bounds: found " + std::to_string(corners.size()) +
-                                          " places; expected the lowest and the highest");
-    }
-    const CallableField field(function, openvdb::BBoxd(corners[0], corners[1]));
+    const openvdb::BBoxd box = boundsOfFunction(request.bounds);
+    const CallableField field(function, box);
     try {
         return finished(inBackground(request.progress, request.threads, [&](Progress& progress) {
             return densityOfField(field, request, progress);
@@ -130,22 +114,13 @@ py::object ofFunction(const py::object& function, const BandlimitRequest& reques
 }
 
 py::object bandlimit(const py::object& source, const BandlimitRequest& request) {
-    const bool isPath = py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__");
-    if (isPath) {
+    if (isPath(source)) {
         const auto path = source.cast<std::filesystem::path>();
         if (isShape(path.string())) return ofShape(path.string(), request);
         return ofFile(path, request);
     }
-    if (py::isinstance<MeshObject>(source)) {
-        return ofMesh(source.cast<const MeshObject&>(), request);
-    }
+    if (const auto mesh = meshOf(source)) return ofMesh(*mesh, request);
     if (PyCallable_Check(source.ptr()) != 0) return ofFunction(source, request);
-    if (py::isinstance<py::sequence>(source) && py::len(source) == 2) {
-        const auto arrays = source.cast<py::sequence>();
-        MeshObject mesh;
-        mesh.surface.mesh = {vectorsOf(arrays[0], "points"), indicesOf(arrays[1], "triangles")};
-        return ofMesh(mesh, request);
-    }
     throw Error(ErrorKind::Usage,
                 std::string("found a ") + Py_TYPE(source.ptr())->tp_name +
                     "; expected a file, 'shape:NAME', a Mesh, (points, triangles) or a function");

@@ -21,7 +21,8 @@ namespace {
 
 using openvdb::Vec3d;
 
-std::shared_ptr<MeshObject> meshOfArrays(const py::handle& points, const py::handle& triangles) {
+std::shared_ptr<MeshObject> meshOfArrays(const py::handle& points, const py::handle& triangles,
+                                         const py::object& colors) {
     auto mesh = std::make_shared<MeshObject>();
     mesh->surface.mesh.points = vectorsOf(points, "points");
     mesh->surface.mesh.triangles = indicesOf(triangles, "triangles");
@@ -32,6 +33,19 @@ std::shared_ptr<MeshObject> meshOfArrays(const py::handle& points, const py::han
         throw Error(ErrorKind::Usage, "triangles: found the point " + std::to_string(largest) +
                                           "; expected less than the number of points, " +
                                           std::to_string(count));
+    }
+    if (colors.is_none()) return mesh;
+    for (const Vec3d& color : vectorsOf(colors, "colors")) {
+        const auto [least, most] = std::minmax({color[0], color[1], color[2]});
+        if (!(least >= 0 && most <= 1)) {
+            throw Error(ErrorKind::Usage, "colors: expected linear light from 0 to 1");
+        }
+        mesh->surface.colors.emplace_back(color);
+    }
+    if (mesh->surface.colors.size() != count) {
+        throw Error(ErrorKind::Usage,
+                    "colors: found " + std::to_string(mesh->surface.colors.size()) +
+                        "; expected one for each of " + std::to_string(count) + " points");
     }
     return mesh;
 }
@@ -81,9 +95,10 @@ void bindMesh(py::module_& module) {
     using Shared = std::shared_ptr<MeshObject>;
     py::class_<MeshObject, Shared>(module, "Mesh", R"(Triangles over shared points.
 
-Mesh(points, triangles): points of shape (n, 3), world units; triangles of shape (m, 3), indices
-of points, counter-clockwise from outside. Arrays are copied.)")
-        .def(py::init(&meshOfArrays), py::arg("points"), py::arg("triangles"))
+Mesh(points, triangles, colors=None): points of shape (n, 3), world units; triangles of shape (m, 3), indices
+of points, counter-clockwise from outside; colors of shape (n, 3), linear light, 0 to 1. Arrays are copied.)")
+        .def(py::init(&meshOfArrays), py::arg("points"), py::arg("triangles"),
+             py::arg("colors") = py::none())
         .def_static("read", &readMeshObject, py::arg("path"),
                     "Reads .obj, .ply, .stl, .off, .gltf, .glb, .fbx or .dae, all objects of it. "
                     "Raises InputError for files that are none.")

@@ -2,6 +2,7 @@
 
 #include "arrays.h"
 #include "background.h"
+#include "camera_arguments.h"
 #include "choices.h"
 #include "grid_object.h"
 
@@ -18,13 +19,6 @@ namespace bandvox::python {
 namespace py = pybind11;
 
 namespace {
-
-using OptionalVector = std::optional<openvdb::Vec3d>;
-
-OptionalVector optionalVector(const py::object& object, const char* what) {
-    if (object.is_none()) return std::nullopt;
-    return vectorOf(object, what);
-}
 
 /// The picture as (height, width, 4), and what was seen at its pixels.
 py::tuple arraysOf(Image&& image) {
@@ -91,7 +85,7 @@ void bindRender(py::module_& module) {
         "_render",
         [](const py::object& grid, int width, int height, int samples, const py::object& eye,
            const py::object& lookat, const py::object& up, const py::object& from,
-           const std::string& projection, double focal, double aperture, double frame,
+           const std::string& camera, double focal, double aperture, double frame,
            const std::optional<double>& iso, const std::string& shading, const py::object& light,
            const py::object& color, double ambient, const py::object& background, bool shadows,
            bool allowEmpty, double tolerance, unsigned seed, int threads,
@@ -100,21 +94,13 @@ void bindRender(py::module_& module) {
             options.width = width;
             options.height = height;
             options.samples = samples;
-            options.camera.eye = optionalVector(eye, "eye");
-            options.camera.lookat = optionalVector(lookat, "lookat");
-            options.camera.up = optionalVector(up, "up");
-            if (!from.is_none()) options.camera.from = vectorOf(from, "from");
-            options.camera.projection = static_cast<CameraOptions::Projection>(
-                choiceOf(projection, {"perspective", "orthographic"}, "projection"));
-            options.camera.focal = focal;
-            options.camera.aperture = aperture;
-            options.camera.frame = frame;
+            options.camera = cameraOf({eye, lookat, up, from, camera, focal, aperture, frame});
             options.iso = iso;
             options.shading = static_cast<Shading>(choiceOf(shading, shadingNames(), "shading"));
             options.light = vectorOf(light, "light");
             options.color = vectorOf(color, "color");
             options.ambient = ambient;
-            options.background = optionalVector(background, "background");
+            options.background = optionalVectorOf(background, "background");
             options.transport.shadows = shadows;
             options.allowEmpty = allowEmpty;
             options.tolerance = tolerance;
@@ -126,7 +112,7 @@ void bindRender(py::module_& module) {
             return arraysOf(std::move(result.image));
         },
         py::arg("grid"), py::arg("width"), py::arg("height"), py::arg("samples"), py::arg("eye"),
-        py::arg("lookat"), py::arg("up"), py::arg("from_"), py::arg("projection"), py::arg("focal"),
+        py::arg("lookat"), py::arg("up"), py::arg("from_"), py::arg("camera"), py::arg("focal"),
         py::arg("aperture"), py::arg("frame"), py::arg("iso"), py::arg("shading"), py::arg("light"),
         py::arg("color"), py::arg("ambient"), py::arg("background"), py::arg("shadows"),
         py::arg("allow_empty"), py::arg("tolerance"), py::arg("seed"), py::arg("threads"),

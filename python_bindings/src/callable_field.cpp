@@ -10,6 +10,20 @@ namespace bandvox::python {
 
 namespace py = pybind11;
 
+openvdb::BBoxd boundsOfFunction(const py::object& bounds) {
+    if (bounds.is_none()) {
+        throw Error(ErrorKind::Usage,
+                    "a function needs bounds; expected the lowest and the highest place where it "
+                    "is not 0, as ((-1, -1, -1), (1, 1, 1))");
+    }
+    const auto corners = vectorsOf(bounds, "bounds");
+    if (corners.size() != 2) {
+        throw Error(ErrorKind::Usage, "bounds: found " + std::to_string(corners.size()) +
+                                          " places; expected the lowest and the highest");
+    }
+    return {corners[0], corners[1]};
+}
+
 CallableField::CallableField(py::object function, const openvdb::BBoxd& bounds)
     : mFunction(std::move(function)), mBounds(bounds) {
     const py::object name = py::getattr(mFunction, "__name__", py::str("function"));

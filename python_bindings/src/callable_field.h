@@ -11,6 +11,10 @@
 
 namespace bandvox::python {
 
+/// The box of a function: the lowest place and the highest. Throws Error(ErrorKind::Usage) if it is
+/// None or something else.
+openvdb::BBoxd boundsOfFunction(const pybind11::object& bounds);
+
 /// A density given by a function of Python, f(x, y, z) of three arrays of the same length, world
 /// units. It is called from many threads, one at a time, with rows of places. To be made and
 /// destroyed with the interpreter's lock.

@@ -4,6 +4,7 @@
 #include "errors.h"
 #include "grid_object.h"
 #include "mesh_object.h"
+#include "patches_object.h"
 
 #include <bandvox/core/parallel.h>
 #include <bandvox/core/version.h>
@@ -21,5 +22,10 @@ PYBIND11_MODULE(_bandvox, module) {
     bindBandlimit(module);
     bindOperations(module);
     bindRender(module);
+    bindPatches(module);
+    bindOutline(module);
+    bindFit(module);
+    bindFitVolume(module);
+    bindVoxelize(module);
     module.def("thread_count", &bandvox::threadCount, "How many threads work at most.");
 }

@@ -1,0 +1,388 @@
+"""What the compiled module is to type checkers; stubs_test.py holds it against the module."""
+
+from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from .types import Doubles, Floats, Path, Progress, Source, Voxel
+
+__version__: str
+
+class Error(Exception): ...
+class UsageError(Error, ValueError): ...
+class InputError(Error, ValueError): ...
+class ResultError(Error, ArithmeticError): ...
+class OutOfMemoryError(Error, MemoryError): ...
+class BandvoxWarning(UserWarning): ...
+
+class Grid:
+    name: str
+    @staticmethod
+    def from_array(
+        array: npt.ArrayLike,
+        *,
+        origin: Optional[npt.ArrayLike] = None,
+        voxel_size: Optional[npt.ArrayLike] = None,
+        transform: Optional[npt.ArrayLike] = None,
+        background: float = 0.0,
+        tolerance: float = 0.0,
+        name: str = "density",
+    ) -> Grid: ...
+    @property
+    def transform(self) -> Doubles: ...
+    @property
+    def voxel_size(self) -> Tuple[float, float, float]: ...
+    @property
+    def metadata(self) -> Dict[str, Any]: ...
+    @property
+    def bounds(self) -> Optional[Tuple[Voxel, Voxel]]: ...
+    @property
+    def active_voxel_count(self) -> int: ...
+    @property
+    def memory_bytes(self) -> int: ...
+    def to_array(self, bounds: Optional[Sequence[npt.ArrayLike]] = None) -> Tuple[Floats, Voxel]: ...
+    def blocks(self) -> Iterator[Tuple[Voxel, Floats]]: ...
+    def copy(self) -> Grid: ...
+    def write(self, path: Path, *, half: bool = False) -> None: ...
+
+class VectorGrid:
+    name: str
+    @staticmethod
+    def from_array(
+        array: npt.ArrayLike,
+        *,
+        origin: Optional[npt.ArrayLike] = None,
+        voxel_size: Optional[npt.ArrayLike] = None,
+        transform: Optional[npt.ArrayLike] = None,
+        background: float = 0.0,
+        tolerance: float = 0.0,
+        name: str = "density",
+    ) -> VectorGrid: ...
+    @property
+    def transform(self) -> Doubles: ...
+    @property
+    def voxel_size(self) -> Tuple[float, float, float]: ...
+    @property
+    def metadata(self) -> Dict[str, Any]: ...
+    @property
+    def bounds(self) -> Optional[Tuple[Voxel, Voxel]]: ...
+    @property
+    def active_voxel_count(self) -> int: ...
+    @property
+    def memory_bytes(self) -> int: ...
+    def to_array(self, bounds: Optional[Sequence[npt.ArrayLike]] = None) -> Tuple[Floats, Voxel]: ...
+    def blocks(self) -> Iterator[Tuple[Voxel, Floats]]: ...
+    def copy(self) -> VectorGrid: ...
+    def write(self, path: Path, *, half: bool = False) -> None: ...
+
+class Mesh:
+    def __init__(
+        self,
+        points: npt.ArrayLike,
+        triangles: npt.ArrayLike,
+        colors: Optional[npt.ArrayLike] = None,
+    ) -> None: ...
+    @staticmethod
+    def read(path: Path) -> Mesh: ...
+    @property
+    def points(self) -> Doubles: ...
+    @property
+    def triangles(self) -> npt.NDArray[np.uint32]: ...
+    @property
+    def normals(self) -> Optional[Floats]: ...
+    @property
+    def colors(self) -> Optional[Floats]: ...
+    @property
+    def name(self) -> str: ...
+    def write(self, path: Path) -> None: ...
+
+class Reconstruction:
+    def __init__(
+        self, grid: Grid, *, tolerance: float = 1.5e-05, cache_bytes: int = 536870912
+    ) -> None: ...
+    def value(self, points: npt.ArrayLike) -> Doubles: ...
+    def gradient(self, points: npt.ArrayLike) -> Doubles: ...
+    def hessian(self, points: npt.ArrayLike) -> Doubles: ...
+
+class Patches:
+    def __init__(
+        self, nets: Iterable[npt.ArrayLike], objects: Optional[Sequence[str]] = None
+    ) -> None: ...
+    @staticmethod
+    def from_bspline(
+        control: npt.ArrayLike, knots_u: Sequence[float], knots_v: Sequence[float]
+    ) -> Patches: ...
+    @staticmethod
+    def read(path: Path) -> Patches: ...
+    @property
+    def nets(self) -> List[Doubles]: ...
+    @property
+    def objects(self) -> List[str]: ...
+    @property
+    def name(self) -> str: ...
+    def position(self, patch: int, uv: npt.ArrayLike) -> Doubles: ...
+    def normal(self, patch: int, uv: npt.ArrayLike) -> Doubles: ...
+    def __len__(self) -> int: ...
+
+class DrawnPath:
+    @property
+    def kind(self) -> str: ...
+    @property
+    def object(self) -> str: ...
+    @property
+    def hidden(self) -> int: ...
+    @property
+    def closed(self) -> bool: ...
+    @property
+    def points(self) -> Doubles: ...
+
+class Drawing:
+    @property
+    def page(self) -> Tuple[float, float]: ...
+    @property
+    def paths(self) -> List[DrawnPath]: ...
+    def svg(self) -> str: ...
+    def save(self, path: Path) -> None: ...
+    def _repr_svg_(self) -> str: ...
+
+class Surface:
+    def __call__(self, x: npt.ArrayLike, y: npt.ArrayLike, *, column: int = 0) -> Any: ...
+    def gradient(self, x: npt.ArrayLike, y: npt.ArrayLike, *, column: int = 0) -> Doubles: ...
+    def normals(self, x: npt.ArrayLike, y: npt.ArrayLike, *, column: int = 0) -> Doubles: ...
+    def curvature(self, x: npt.ArrayLike, y: npt.ArrayLike, *, column: int = 0) -> Doubles: ...
+    def sample(self, samples: int = 257) -> Doubles: ...
+    def patches(self) -> Patches: ...
+    def mesh(self, samples: int = 257) -> Mesh: ...
+    def save(self, path: Path, *, samples: int = 257) -> None: ...
+    def density(
+        self,
+        *,
+        resolution: int = 256,
+        voxel_size: float = 0.0,
+        base: Optional[float] = None,
+        cutoff: float = 0.16,
+        order: float = 2.0,
+        tolerance: float = 0.0001,
+        threads: int = 0,
+        progress: Optional[Progress] = None,
+    ) -> Grid: ...
+    def part(self, first: int, last: int) -> Surface: ...
+    @property
+    def levels(self) -> List[Dict[str, Any]]: ...
+    @property
+    def rectangle(self) -> Tuple[float, float, float, float]: ...
+    @property
+    def columns(self) -> int: ...
+    @property
+    def tension(self) -> float: ...
+
+class Volume:
+    def __call__(self, points: npt.ArrayLike, *, column: int = 0) -> Doubles: ...
+    def covers(self, points: npt.ArrayLike) -> npt.NDArray[np.bool_]: ...
+    def grid(
+        self,
+        *,
+        name: str = "density",
+        column: int = 0,
+        columns: int = 1,
+        resolution: int = 256,
+        voxel_size: float = 0.0,
+        threads: int = 0,
+        progress: Optional[Progress] = None,
+    ) -> Any: ...
+    @property
+    def bounds(self) -> Tuple[Tuple[float, float, float], Tuple[float, float, float]]: ...
+    @property
+    def reach(self) -> float: ...
+    @property
+    def columns(self) -> int: ...
+    @property
+    def largest(self) -> float: ...
+
+def bandlimit(
+    source: Source,
+    *,
+    resolution: int = 256,
+    voxel_size: float = 0.0,
+    cutoff: float = 0.16,
+    order: float = 2.0,
+    tolerance: float = 0.0001,
+    tile: int = 0,
+    clamp: bool = False,
+    iso: float = 0.5,
+    route: str = "auto",
+    overlap: str = "union",
+    oversample: Optional[int] = None,
+    bounds: Optional[npt.ArrayLike] = None,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Grid: ...
+def colors(
+    source: Union[Path, Mesh],
+    density: Grid,
+    *,
+    cutoff: float = 0.16,
+    order: float = 2.0,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> VectorGrid: ...
+def compare(
+    a: Grid,
+    b: Grid,
+    *,
+    surfaces: bool = True,
+    iso: Optional[float] = None,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Dict[str, Any]: ...
+def detail_levels(
+    grid: Grid,
+    levels: int,
+    *,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> List[Grid]: ...
+def fit(
+    places: Union[Path, npt.ArrayLike],
+    values: Optional[npt.ArrayLike] = None,
+    *,
+    columns: Sequence[str] = [],
+    rectangle: Optional[Sequence[float]] = None,
+    tolerance: Optional[float] = None,
+    smooth: float = 0.0,
+    max_level: Optional[int] = None,
+    levels: Optional[Sequence[int]] = None,
+    tension: Optional[float] = None,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Surface: ...
+def fit_volume(
+    places: Union[Path, npt.ArrayLike],
+    values: Optional[npt.ArrayLike] = None,
+    *,
+    columns: Sequence[str] = [],
+    tolerance: Optional[float] = None,
+    smooth: float = 0.0,
+    max_level: Optional[int] = None,
+    reach: Optional[float] = None,
+    tension: float = 2.0,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Volume: ...
+def iso_of_volume(
+    grid: Grid, volume: float, *, progress: Optional[Progress] = None
+) -> Tuple[float, float]: ...
+def merge(
+    grids: Iterable[Grid],
+    *,
+    operation: str = "union",
+    weights: Sequence[float] = [],
+    clamp: bool = False,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Grid: ...
+def outline(
+    source: Union[Path, Patches],
+    *,
+    page: Sequence[float] = [200.0, 150.0],
+    margin: Optional[float] = None,
+    tolerance: float = 0.01,
+    crease_angle: float = 5.0,
+    kinds: Sequence[str] = ["contour", "boundary", "crease", "intersection"],
+    hidden: bool = True,
+    stroke: float = 0.35,
+    stroke_color: str = "#000000",
+    hidden_stroke: float = 0.18,
+    hidden_color: str = "#808080",
+    dash: str = "1.2 0.8",
+    eye: Optional[npt.ArrayLike] = None,
+    lookat: Optional[npt.ArrayLike] = None,
+    up: Optional[npt.ArrayLike] = None,
+    from_: Optional[npt.ArrayLike] = None,
+    camera: str = "perspective",
+    focal: float = 50.0,
+    aperture: float = 41.2136,
+    frame: float = 0.0,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Drawing: ...
+def read_vdb(path: Path) -> List[Any]: ...
+def resample(
+    grid: Grid,
+    *,
+    factor: float = 0.0,
+    voxel_size: float = 0.0,
+    onto: Union[Grid, VectorGrid, None] = None,
+    filter: bool = True,
+    cutoff: float = 0.16,
+    order: float = 2.0,
+    tolerance: float = 0.0001,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Grid: ...
+def shape_names() -> List[str]: ...
+def thread_count() -> int: ...
+def to_level_set(
+    grid: Grid,
+    *,
+    iso: Optional[float] = None,
+    half_width: float = 3.0,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Grid: ...
+def to_mesh(
+    grid: Grid,
+    *,
+    iso: Optional[float] = None,
+    adaptivity: float = 0.0,
+    tolerance: float = 0.001,
+    colors: Optional[VectorGrid] = None,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Mesh: ...
+def voxelize(
+    source: Source,
+    *,
+    resolution: int = 256,
+    voxel_size: float = 0.0,
+    threshold: int = 0,
+    fraction: bool = False,
+    axis: str = "x",
+    backend: str = "auto",
+    bounds: Optional[npt.ArrayLike] = None,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Grid: ...
+def write_image(
+    path: Path, image: npt.ArrayLike, channels: Optional[Dict[str, Floats]] = None
+) -> None: ...
+def write_vdb(
+    path: Path, grids: Iterable[Union[Grid, VectorGrid]], *, half: bool = False
+) -> None: ...
+def _render(
+    grid: Grid,
+    width: int,
+    height: int,
+    samples: int,
+    eye: Optional[npt.ArrayLike],
+    lookat: Optional[npt.ArrayLike],
+    up: Optional[npt.ArrayLike],
+    from_: Optional[npt.ArrayLike],
+    camera: str,
+    focal: float,
+    aperture: float,
+    frame: float,
+    iso: Optional[float],
+    shading: str,
+    light: npt.ArrayLike,
+    color: npt.ArrayLike,
+    ambient: float,
+    background: Optional[npt.ArrayLike],
+    shadows: bool,
+    allow_empty: bool,
+    tolerance: float,
+    seed: int,
+    threads: int,
+    progress: Optional[Progress],
+) -> Tuple[Floats, Dict[str, Floats]]: ...

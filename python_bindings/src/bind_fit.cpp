@@ -1,0 +1,121 @@
+// Smooth surfaces through values at scattered places of a plane.
+
+#include "background.h"
+#include "bindings.h"
+#include "errors.h"
+#include "scattered_arrays.h"
+#include "solid_mesh.h"
+#include "surface_object.h"
+
+#include <bandvox/scatter/fit_surface.h>
+#include <bandvox/scatter/read_scattered_points.h>
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+
+namespace bandvox::python {
+
+namespace py = pybind11;
+
+namespace {
+
+/// What the user asked for has to be there; what holds otherwise is worth a warning.
+void judge(const SurfaceFit& fit, const FitSurfaceOptions& options, bool hasTolerance) {
+    if (options.noise > 0) {
+        constexpr double kNearly = 0.1;
+        if (std::abs(fit.noiseLeft - 1) <= kNearly) return;
+        std::string message = "the surface differs from the values by ";
+        message += inDigits(fit.noiseLeft * options.noise);
+        message += " in the root of the mean square; expected " + inDigits(options.noise);
+        return warn({message + ", by smooth"});
+    }
+    const double largest = fit.report.back().largest;
+    if (largest <= options.tolerance) return;
+    std::string message = "the surface is off by " + inDigits(largest);
+    message += " of the range at a point; expected " + inDigits(options.tolerance);
+    message += " at most, by tolerance";
+    constexpr double kUseless = 0.01;
+    if (hasTolerance || (!options.maxLevel && !(largest <= kUseless))) {
+        throw Error(ErrorKind::Result, message);
+    }
+    warn({message});
+}
+
+SharedSurface fitted(const py::object& places, const py::object& values,
+                     const std::vector<std::string>& columns, const FitSurfaceOptions& options,
+                     bool hasTolerance, const std::optional<std::array<int, 2>>& levels,
+                     int threads, const py::object& progress) {
+    auto object = std::make_shared<SurfaceObject>();
+    const bool isFile = isPath(places);
+    if (isFile == !values.is_none()) {
+        throw Error(ErrorKind::Usage,
+                    "expected a file alone, or places of shape (n, 2) and their values");
+    }
+    ScatteredPoints points;
+    std::filesystem::path path;
+    if (isFile) {
+        path = places.cast<std::filesystem::path>();
+        object->name = path.filename().string();
+    } else {
+        points = scatteredOf(places, values, 2);
+    }
+    const SurfaceFit fit = inBackground(progress, threads, [&](Progress& watched) {
+        if (isFile) points = readScatteredPoints(path, {columns, false}, watched).points;
+        return fitSurface(points, options, watched);
+    });
+    judge(fit, options, hasTolerance);
+    object->surface = levels ? sumOf(fit, *levels) : fit.sum();
+    object->fit = std::make_shared<SurfaceFit>(fit);
+    return object;
+}
+
+}  // namespace
+
+void bindFit(py::module_& module) {
+    bindSurface(module);
+    module.def(
+        "fit",
+        [](const py::object& places, const py::object& values,
+           const std::vector<std::string>& columns,
+           const std::optional<std::array<double, 4>>& rectangle,
+           const std::optional<double>& tolerance, double smooth,
+           const std::optional<int>& maxLevel, const std::optional<std::array<int, 2>>& levels,
+           const std::optional<double>& tension, int threads, const py::object& progress) {
+            FitSurfaceOptions options;
+            if (rectangle) {
+                options.rectangle =
+                    Rectangle{(*rectangle)[0], (*rectangle)[1], (*rectangle)[2], (*rectangle)[3]};
+            }
+            if (tolerance && smooth != 0) {
+                throw Error(ErrorKind::Usage, "tolerance and smooth exclude each other");
+            }
+            options.tolerance = tolerance.value_or(options.tolerance);
+            options.noise = smooth;
+            options.maxLevel = maxLevel;
+            options.tension = tension;
+            return fitted(places, values, columns, options, tolerance.has_value(), levels, threads,
+                          progress);
+        },
+        py::arg("places"), py::arg("values") = py::none(), py::kw_only(),
+        py::arg("columns") = std::vector<std::string>{}, py::arg("rectangle") = py::none(),
+        py::arg("tolerance") = py::none(), py::arg("smooth") = 0.0,
+        py::arg("max_level") = py::none(), py::arg("levels") = py::none(),
+        py::arg("tension") = py::none(), py::arg("threads") = 0, py::arg("progress") = py::none(),
+        R"(Fits the smoothest sum of B-spline surfaces to values at scattered places; a Surface.
+
+places: (n, 2), world units, and values: (n,) or (n, columns); or a .csv, .xyz, .txt or .npy file
+alone, and columns: names, or numbers from 1, of x, y and values. rectangle: x0, y0, x1, y1, by
+default that of the places. tolerance: how far it may be off at a point, in parts of the values'
+range, 0 to 1; 1e-12 if it is None. smooth: the values have errors of this standard deviation.
+max_level: at most 2**max_level cells along the longer side, 1 to 13. levels: (first, last) to sum
+up. tension: stiff within 1 / tension, and like a membrane farther off.
+
+Raises ResultError if a tolerance that is given is not reached, or the surface is off by more than
+0.01 without a max_level.)");
+}
+
+}  // namespace bandvox::python

@@ -1,0 +1,260 @@
+// Free-form surfaces as drawings of lines.
+
+#include "arrays.h"
+#include "background.h"
+#include "bindings.h"
+#include "camera_arguments.h"
+#include "choices.h"
+#include "errors.h"
+#include "patches_object.h"
+#include "solid_mesh.h"
+
+#include <bandvox/core/atomic_file.h>
+#include <bandvox/outline/patches_to_outline.h>
+#include <bandvox/outline/write_outline.h>
+#include <bandvox/source/read_patches.h>
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
+
+namespace bandvox::python {
+
+namespace py = pybind11;
+
+namespace {
+
+const std::vector<std::string>& lineKinds() {
+    static const std::vector<std::string> names{"contour", "boundary", "crease", "intersection"};
+    return names;
+}
+
+struct DrawingObject {
+    Outline outline;
+    StrokeOptions stroke;
+};
+
+/// A line of a drawing, and the drawing's name for its object.
+struct DrawnPath {
+    OutlinePath path;
+    std::string object;
+};
+
+void saveDrawing(const DrawingObject& drawing, const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::size_t kind = choiceOf(extension, {".svg", ".pdf", ".eps"}, "the file's extension");
+    const auto write = kind == 0 ? writeSvg : kind == 1 ? writePdf : writeEps;
+    const py::gil_scoped_release unlocked;
+    AtomicFile file(path);
+    write(file, drawing.outline, drawing.stroke);
+    file.commit();
+}
+
+std::string svgOf(const DrawingObject& drawing) {
+    const std::string pattern =
+        (std::filesystem::temp_directory_path() / "bandvox-drawing-XXXXXX").string();
+    std::vector<char> name(pattern.c_str(), pattern.c_str() + pattern.size() + 1);
+    if (::mkdtemp(name.data()) == nullptr) {
+        throw Error(ErrorKind::Runtime, "cannot make a folder '" + pattern + "'");
+    }
+    const std::filesystem::path folder = name.data();
+    // Whatever happens, the folder goes.
+    const std::shared_ptr<void> removal(nullptr, [&folder](void*) {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder, ignored);
+    });
+    saveDrawing(drawing, folder / "drawing.svg");
+    std::ifstream stream(folder / "drawing.svg", std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Colours and lengths go into a style sheet, and must not end it.
+void requireStyle(const std::string& text, const char* what) {
+    const bool isPlain = !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+               std::string("#(),.% -").find(c) != std::string::npos;
+    });
+    if (isPlain) return;
+    throw Error(ErrorKind::Usage, std::string(what) + " is '" + text +
+                                      "'; expected a value as in CSS: letters, digits and #(),.%-");
+}
+
+void requireLength(double length, const char* what) {
+    if (length > 0 && length <= 1e5) return;
+    throw Error(ErrorKind::Usage, std::string(what) + " is " + std::to_string(length) +
+                                      "; expected millimetres above 0");
+}
+
+StrokeOptions checked(const StrokeOptions& stroke) {
+    requireLength(stroke.width, "stroke");
+    requireLength(stroke.hiddenWidth, "hidden_stroke");
+    requireStyle(stroke.color, "stroke_color");
+    requireStyle(stroke.hiddenColor, "hidden_color");
+    requireStyle(stroke.dash, "dash");
+    return stroke;
+}
+
+void setPage(OutlineOptions& options, const std::array<double, 2>& page,
+             const std::optional<double>& margin) {
+    requireLength(page[0], "page");
+    requireLength(page[1], "page");
+    options.width = page[0];
+    options.height = page[1];
+    const double shorter = std::min(page[0], page[1]);
+    options.margin = margin.value_or(std::min(options.margin, 0.05 * shorter));
+    if (options.margin >= 0 && options.margin < 0.5 * shorter) return;
+    throw Error(ErrorKind::Usage, "margin is " + std::to_string(options.margin) +
+                                      "; expected 0 or more, and less than half the page");
+}
+
+std::shared_ptr<DrawingObject> draw(const py::object& source, const OutlineOptions& options,
+                                    const std::vector<std::string>& kinds,
+                                    const StrokeOptions& stroke, int threads,
+                                    const py::object& progress) {
+    std::vector<bool> isKept(lineKinds().size());
+    for (const std::string& kind : kinds) isKept[choiceOf(kind, lineKinds(), "kinds")] = true;
+    const PatchModel* patches = nullptr;
+    std::filesystem::path path;
+    if (py::isinstance<PatchesObject>(source)) {
+        patches = &source.cast<const PatchesObject&>().model;
+    } else if (isPath(source)) {
+        path = source.cast<std::filesystem::path>();
+    } else {
+        throw Error(ErrorKind::Usage, std::string("found a ") + Py_TYPE(source.ptr())->tp_name +
+                                          "; expected a file or bandvox.Patches");
+    }
+    auto drawing = std::make_shared<DrawingObject>();
+    drawing->stroke = checked(stroke);
+    std::vector<std::string> warnings;
+    drawing->outline = inBackground(progress, threads, [&](Progress& watched) {
+        if (patches != nullptr) return patchesToOutline(*patches, options, watched);
+        const PatchModel read = readPatches(path, watched);
+        warnings = read.warnings;
+        return patchesToOutline(read, options, watched);
+    });
+    auto& paths = drawing->outline.paths;
+    std::erase_if(
+        paths, [&](const OutlinePath& one) { return !isKept[static_cast<std::size_t>(one.kind)]; });
+    if (paths.empty()) {
+        throw Error(ErrorKind::Result,
+                    "the drawing is empty: it has no lines of these kinds; expected some");
+    }
+    warn(warnings);
+    warn(drawing->outline.warnings);
+    return drawing;
+}
+
+py::list pathsOf(const DrawingObject& drawing) {
+    py::list paths;
+    for (const OutlinePath& path : drawing.outline.paths) {
+        paths.append(
+            DrawnPath{path, drawing.outline.objects[static_cast<std::size_t>(path.object)]});
+    }
+    return paths;
+}
+
+py::array pointsOf(const DrawnPath& drawn) {
+    std::vector<double> numbers;
+    for (const auto& point : drawn.path.points) {
+        numbers.insert(numbers.end(), point.begin(), point.end());
+    }
+    const auto count = static_cast<py::ssize_t>(drawn.path.points.size());
+    return ownedArray(std::move(numbers), {count, 2});
+}
+
+void bindDrawing(py::module_& module) {
+    py::class_<DrawnPath>(module, "DrawnPath",
+                          "A line of a Drawing: cubic Bézier curves, one after "
+                          "the other.")
+        .def_property_readonly(
+            "kind",
+            [](const DrawnPath& self) {
+                return lineKinds()[static_cast<std::size_t>(self.path.kind)];
+            },
+            "'contour', 'boundary', 'crease' or 'intersection'.")
+        .def_readonly("object", &DrawnPath::object, "The name of the object that it belongs to.")
+        .def_property_readonly(
+            "hidden", [](const DrawnPath& self) { return self.path.hidden; },
+            "How many surfaces are in front of it; 0: it is seen.")
+        .def_property_readonly(
+            "closed", [](const DrawnPath& self) { return self.path.closed; },
+            "Whether its last point is the first one again.")
+        .def_property_readonly("points", &pointsOf,
+                               "(3 n + 1, 2) float64, millimetres of the page, y downward: an "
+                               "anchor, and for each curve two handles and the next anchor.");
+    py::class_<DrawingObject, std::shared_ptr<DrawingObject>>(
+        module, "Drawing", "A drawing of lines, as outline makes it. A notebook shows it.")
+        .def_property_readonly(
+            "page",
+            [](const DrawingObject& self) {
+                return py::make_tuple(self.outline.width, self.outline.height);
+            },
+            "Width and height, millimetres.")
+        .def_property_readonly("paths", &pathsOf, "Its lines, a DrawnPath each.")
+        .def("svg", &svgOf, "The text of an SVG file.")
+        .def("save", &saveDrawing, py::arg("path"),
+             "Writes an .svg, .pdf or .eps file, whole or not at all.")
+        .def("_repr_svg_", &svgOf)
+        .def("__repr__", [](const DrawingObject& self) {
+            return "<bandvox.Drawing: " + std::to_string(self.outline.paths.size()) + " paths>";
+        });
+}
+
+}  // namespace
+
+void bindOutline(py::module_& module) {
+    bindDrawing(module);
+    const OutlineOptions standard;
+    const StrokeOptions stroke;
+    module.def(
+        "outline",
+        [](const py::object& source, const std::array<double, 2>& page,
+           const std::optional<double>& margin, double tolerance, double creaseAngle,
+           const std::vector<std::string>& kinds, bool hidden, double width, std::string color,
+           double hiddenWidth, std::string hiddenColor, std::string dash, const py::object& eye,
+           const py::object& lookat, const py::object& up, const py::object& from,
+           const std::string& camera, double focal, double aperture, double frame, int threads,
+           const py::object& progress) {
+            OutlineOptions options;
+            setPage(options, page, margin);
+            options.tolerance = tolerance;
+            options.creaseAngle = creaseAngle;
+            options.hidden = hidden;
+            options.camera = cameraOf({eye, lookat, up, from, camera, focal, aperture, frame});
+            return draw(
+                source, options, kinds,
+                {width, hiddenWidth, std::move(color), std::move(hiddenColor), std::move(dash)},
+                threads, progress);
+        },
+        py::arg("source"), py::kw_only(),
+        py::arg("page") = std::array<double, 2>{standard.width, standard.height},
+        py::arg("margin") = py::none(), py::arg("tolerance") = standard.tolerance,
+        py::arg("crease_angle") = standard.creaseAngle, py::arg("kinds") = lineKinds(),
+        py::arg("hidden") = true, py::arg("stroke") = stroke.width,
+        py::arg("stroke_color") = stroke.color, py::arg("hidden_stroke") = stroke.hiddenWidth,
+        py::arg("hidden_color") = stroke.hiddenColor, py::arg("dash") = stroke.dash,
+        py::arg("eye") = py::none(), py::arg("lookat") = py::none(), py::arg("up") = py::none(),
+        py::arg("from_") = py::none(), py::arg("camera") = "perspective",
+        py::arg("focal") = standard.camera.focal, py::arg("aperture") = standard.camera.aperture,
+        py::arg("frame") = standard.camera.frame, py::arg("threads") = 0,
+        py::arg("progress") = py::none(),
+        R"(Draws free-form surfaces as lines; returns a Drawing.
+
+source: Patches, or a .bpt or .obj file of them. page: width and height, millimetres; margin: what
+stays free. tolerance: how far lines may be from the true ones, millimetres. crease_angle: patches
+that meet at more have a line between, degrees. kinds: which lines are drawn. hidden: keep those
+behind something. stroke, hidden_stroke: widths, millimetres; stroke_color, hidden_color: as in CSS;
+dash: of hidden lines. The camera's words are those of render. Raises ResultError if nothing is to
+be drawn.)");
+}
+
+}  // namespace bandvox::python

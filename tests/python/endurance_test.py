@@ -1,0 +1,104 @@
+"""A thousand calls leave no memory behind, and threads do not wait for each other."""
+
+import ctypes
+import os
+import pathlib
+import threading
+
+import numpy as np
+import pytest
+
+import bandvox
+
+
+def resident_bytes():
+    # What is free in the pools of the C library counts for nothing.
+    ctypes.CDLL(None).malloc_trim(0)
+    pages = int(pathlib.Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
+@pytest.mark.skipif(not pathlib.Path("/proc/self/statm").exists(), reason="needs /proc")
+def test_a_thousand_calls_leave_nothing_behind(cube):
+    places = np.random.RandomState(1).random_sample((30, 2))
+    values = places.sum(axis=1)
+    net = np.random.RandomState(2).random_sample((1, 4, 4, 3))
+    big = np.random.RandomState(3).random_sample((40, 40, 40)).astype(np.float32)
+
+    def fails(x, y, z):
+        raise LookupError("no such place")
+
+    def once():
+        grid = bandvox.bandlimit("shape:torus", resolution=16, tolerance=1e-3,
+                                 progress=lambda stage, fraction: None)
+        grid.to_array()
+        bandvox.render(grid, width=12, height=12)._repr_png_()
+        bandvox.to_mesh(grid)
+        list(bandvox.Grid.from_array(big).blocks())
+        bandvox.Reconstruction(grid).gradient(cube[0])
+        bandvox.voxelize(cube, voxel_size=0.5)
+        bandvox.fit(places, values, tolerance=0.01)(0.5, values)
+        bandvox.Patches(net).nets
+        for wrong in ({"source": 7}, {"source": fails, "bounds": ((0, 0, 0), (1, 1, 1))}):
+            with pytest.raises((bandvox.UsageError, LookupError)):
+                bandvox.bandlimit(voxel_size=0.5, **wrong)
+
+    # Caches and pools of memory are full by then.
+    for _ in range(20):
+        once()
+    before = resident_bytes()
+    for _ in range(100):
+        once()
+    # More than ten calls each; 40 kB kept by each round would be 4 MB.
+    assert resident_bytes() - before < 4 << 20
+
+
+def test_eight_pictures_are_drawn_at_once(torus):
+    # Each waits in the middle of its work until all others are in the middle of theirs: were one to
+    # wait for another's end, none would end.
+    together = threading.Barrier(8)
+    counted = [0]
+    found, failed = [None] * 8, []
+
+    def draw(i):
+        has_met = False
+
+        def meet(stage, fraction):
+            nonlocal has_met
+            if not has_met:
+                has_met = True
+                together.wait(timeout=240)
+                counted[0] += 1
+
+        try:
+            found[i] = bandvox.render(torus, width=640, height=640, samples=3, threads=1,
+                                      progress=meet).image
+        except Exception as error:  # Of a thread it would go unseen.
+            failed.append(error)
+
+    threads = [threading.Thread(target=draw, args=(i,)) for i in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not failed
+    assert counted == [8]
+    for image in found:
+        np.testing.assert_array_equal(image, found[0])
+
+
+def test_python_goes_on_while_pictures_are_drawn(torus):
+    rounds = 0
+    is_drawn = threading.Event()
+
+    def draw():
+        bandvox.render(torus, width=640, height=640, samples=3)
+
+    threads = [threading.Thread(target=draw) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    while any(thread.is_alive() for thread in threads):
+        rounds += 1
+        is_drawn.wait(1e-4)
+    # With the interpreter's lock held, there would be a round between two pictures.
+    assert rounds > 80

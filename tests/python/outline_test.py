@@ -1,0 +1,138 @@
+"""Patches come from files and arrays, and become drawings."""
+
+import pathlib
+import xml.etree.ElementTree
+
+import numpy as np
+import pytest
+
+import bandvox
+
+TEAPOT = pathlib.Path(__file__).resolve().parents[2] / "examples" / "data" / "teapot.bpt"
+
+
+@pytest.fixture(scope="module")
+def cylinder():
+    """A quarter of a cylinder of radius 1 around z, from z = 0 to 2."""
+    weight = np.sqrt(0.5)
+    circle = np.array([(1, 0, 1), (weight, weight, weight), (0, 1, 1)])
+    net = np.empty((3, 2, 4))
+    for j, z in enumerate((0, 2)):
+        net[:, j] = np.column_stack([circle[:, :2], z * circle[:, 2], circle[:, 2]])
+    return bandvox.Patches([net])
+
+
+@pytest.fixture(scope="module")
+def drawing():
+    return bandvox.outline(TEAPOT, up=(0, 0, 1), from_=(1, -2, 1))
+
+
+def test_nets_come_back(cylinder):
+    flat = np.random.RandomState(1).random_sample((4, 3, 3))
+    patches = bandvox.Patches([flat, cylinder.nets[0]], objects=["leaf", "pipe"])
+    assert len(patches) == 2 and patches.objects == ["leaf", "pipe"]
+    np.testing.assert_array_equal(patches.nets[0][..., :3], flat)
+    assert (patches.nets[0][..., 3] == 1).all()
+    np.testing.assert_array_equal(patches.nets[1], cylinder.nets[0])
+    assert len(bandvox.Patches(np.zeros((5, 2, 2, 3)))) == 5
+
+
+def test_rational_patches_are_round(cylinder):
+    uv = np.random.RandomState(2).random_sample((50, 2))
+    points, normals = cylinder.position(0, uv), cylinder.normal(0, uv)
+    np.testing.assert_allclose(np.hypot(points[:, 0], points[:, 1]), 1, atol=1e-14)
+    np.testing.assert_allclose(points[:, 2], 2 * uv[:, 1], atol=1e-14)
+    np.testing.assert_allclose(normals[:, :2], points[:, :2], atol=1e-12)
+    with pytest.raises(IndexError):
+        cylinder.position(1, uv)
+    with pytest.raises(bandvox.UsageError, match="from 0 to 1"):
+        cylinder.position(0, [(0, 1.5)])
+
+
+def test_bsplines_become_patches():
+    x, y = np.meshgrid(np.linspace(0, 1, 6), np.linspace(0, 1, 4), indexing="ij")
+    control = np.stack([x, y, np.sin(3 * x) * y], axis=-1)
+    patches = bandvox.Patches.from_bspline(control, range(10), [0, 0, 0, 1, 2, 2, 2])
+    assert [net.shape for net in patches.nets] == [(4, 3, 4)] * 6
+    # Two neighbours meet with the same normals.
+    side = np.column_stack([np.ones(5), np.linspace(0, 1, 5)])
+    across = side * (0, 1)
+    one = [i for i in range(6) if np.allclose(patches.position(i, across[:1]),
+                                              patches.position(0, side[:1]))][0]
+    np.testing.assert_allclose(patches.position(0, side), patches.position(one, across))
+    np.testing.assert_allclose(patches.normal(0, side), patches.normal(one, across), atol=1e-12)
+    with pytest.raises(bandvox.UsageError):
+        bandvox.Patches.from_bspline(control, [3, 2, 1, 0, 0, 0, 0], [0, 0, 0, 1, 2, 2, 2])
+
+
+def test_wrong_nets_are_named():
+    for nets, words in (
+        ([], "no control net"),
+        ([np.zeros((3, 3))], r"control points: found an array of shape \(3, 3\) of float64"),
+        ([np.zeros((1, 3, 3))], r"\(1, 3, 3\)"),
+        ([np.zeros((2, 2, 4))], "weight 0"),
+        ([np.full((2, 2, 3), np.inf)], "inf"),
+        ([np.zeros((27, 2, 3))], "26 x 26"),
+    ):
+        with pytest.raises(bandvox.UsageError, match=words):
+            bandvox.Patches(nets)
+    with pytest.raises(bandvox.UsageError, match="objects: found 1"):
+        bandvox.Patches(np.zeros((2, 2, 2, 3)), objects=["one"])
+
+
+def test_a_drawing_is_svg(drawing, tmp_path):
+    text = drawing.svg()
+    root = xml.etree.ElementTree.fromstring(text)
+    assert root.attrib["width"] == "200mm" and drawing.page == (200, 150)
+    assert drawing._repr_svg_() == text
+    for name in ("teapot.svg", "teapot.pdf", "teapot.eps"):
+        drawing.save(tmp_path / name)
+    assert (tmp_path / "teapot.svg").read_text() == text
+    assert (tmp_path / "teapot.pdf").read_bytes().startswith(b"%PDF")
+    assert len(list(tmp_path.iterdir())) == 3
+    with pytest.raises(bandvox.UsageError, match="'.png'.*'.svg'"):
+        drawing.save(tmp_path / "teapot.png")
+
+
+def test_lines_are_bezier_curves(drawing):
+    kinds = {path.kind for path in drawing.paths}
+    assert "contour" in kinds and "boundary" in kinds
+    for path in drawing.paths:
+        assert path.points.shape[1] == 2 and len(path.points) % 3 == 1
+        assert path.object
+        if path.closed:
+            np.testing.assert_allclose(path.points[0], path.points[-1])
+    assert any(path.hidden for path in drawing.paths)
+
+
+def test_the_options_are_those_of_the_command(drawing):
+    patches = bandvox.Patches.read(TEAPOT)
+    same = bandvox.outline(patches, up=(0, 0, 1), from_=(1, -2, 1))
+    assert same.svg() == drawing.svg()
+    few = bandvox.outline(patches, up=(0, 0, 1), from_=(1, -2, 1), kinds=["contour"],
+                          hidden=False, stroke=0.5, stroke_color="#ff0000", page=(90, 60))
+    assert {path.kind for path in few.paths} == {"contour"}
+    assert not any(path.hidden for path in few.paths)
+    assert "#ff0000" in few.svg() and few.page == (90, 60)
+    for wrong in ({"kinds": ["shadow"]}, {"stroke": 0}, {"stroke_color": "red}svg{"},
+                  {"page": (0, 10)}, {"margin": 80}, {"camera": "fisheye"}, {"dash": ""},
+                  {"crease_angle": 200}):
+        with pytest.raises(bandvox.UsageError):
+            bandvox.outline(patches, **wrong)
+    with pytest.raises(bandvox.ResultError, match="these kinds"):
+        bandvox.outline(patches, kinds=[])
+    with pytest.raises(bandvox.UsageError, match="found a float"):
+        bandvox.outline(1.5)
+
+
+def test_a_cylinder_seen_from_the_side_is_a_rectangle(cylinder):
+    found = bandvox.outline(cylinder, camera="orthographic", eye=(9, 9, 1), lookat=(0, 0, 1),
+                            up=(0, 0, 1), frame=4, page=(100, 100), margin=0)
+    assert {path.kind for path in found.paths} == {"boundary"}
+    # 25 mm to a unit, and the quarter's ends at a distance of sqrt(1/2) from the middle.
+    anchors = np.concatenate([path.points[::3] for path in found.paths]) / 25 - 2
+    side = np.sqrt(0.5)
+    np.testing.assert_allclose([anchors.min(axis=0), anchors.max(axis=0)],
+                               [(-side, -1), (side, 1)], atol=1e-3)
+    assert (np.isclose(np.abs(anchors[:, 0]), side, atol=1e-3)
+            | np.isclose(np.abs(anchors[:, 1]), 1, atol=1e-3)).all()
