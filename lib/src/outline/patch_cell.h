@@ -1,0 +1,47 @@
+#pragma once
+
+#include "outline/vectors.h"
+#include "outline/view_patch.h"
+
+#include <array>
+#include <vector>
+
+namespace bandvox {
+
+/// A square of a patch's parameters with what encloses it in the space of the view: all bounds come
+/// from its control points.
+struct PatchCell {
+    int patch = 0;
+    double u0 = 0, v0 = 0, size = 1;
+    int m = 0, n = 0;                                 ///< degrees by u and v
+    std::vector<std::array<double, 4>> homogeneous;   ///< (wx, wy, wz, w); empty if not rational
+    std::vector<Vec> points;                          ///< (m + 1) * (n + 1), [u][v]
+    Vec low{}, high{};
+    Cone alongU, alongV;  ///< of the derivatives by u and v
+    Cone normals;
+
+    const Vec& at(int i, int j) const {
+        return points[static_cast<std::size_t>(i * (n + 1) + j)];
+    }
+    double extent() const;
+
+    /// Whether no two places of the cell are in the same place.
+    bool isOneToOne() const { return areApart(alongU, alongV); }
+};
+
+PatchCell cellOf(const ViewPatch& patch, int index);
+
+/// The quarters: (low u, low v), (low, high), (high, low), (high, high).
+std::array<PatchCell, 4> quartersOf(const PatchCell& cell);
+
+/// What is known of where two cells meet.
+enum class CellRelation {
+    Apart,       ///< nowhere, but for a side or a corner that they share
+    Transversal, ///< their normals are nowhere parallel: no curve closes, or touches
+    Unknown
+};
+
+/// `reach`: within which points are the same.
+CellRelation relationOf(const PatchCell& a, const PatchCell& b, double reach);
+
+}  // namespace bandvox
