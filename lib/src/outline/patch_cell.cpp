@@ -9,36 +9,12 @@ namespace bandvox {
 namespace {
 
 template <std::size_t kRows>
-using ControlPoints = std::vector<std::array<double, kRows>>;
-
-// Replaces points, `step` apart, by those of the first half; writes those of the second one.
-template <std::size_t kRows>
-void halveLine(std::array<double, kRows>* low, std::array<double, kRows>* high, int degree,
-               std::ptrdiff_t step) {
-    high[degree * step] = low[degree * step];
-    for (int r = 1; r <= degree; ++r) {
-        for (int i = degree; i >= r; --i) {
-            auto& here = low[i * step];
-            const auto& before = low[(i - 1) * step];
-            for (std::size_t c = 0; c < kRows; ++c) here[c] = 0.5 * (here[c] + before[c]);
-        }
-        high[(degree - r) * step] = low[degree * step];
-    }
-}
-
-template <std::size_t kRows>
-std::array<ControlPoints<kRows>, 4> quarterPoints(const ControlPoints<kRows>& points, int m,
-                                                  int n) {
-    std::array<ControlPoints<kRows>, 4> q;
-    q[0] = points;
-    for (std::size_t k = 1; k < 4; ++k) q[k].resize(points.size());
-    for (int j = 0; j <= n; ++j) halveLine(&q[0][static_cast<std::size_t>(j)],
-                                           &q[2][static_cast<std::size_t>(j)], m, n + 1);
-    for (int i = 0; i <= m; ++i) {
-        const auto k = static_cast<std::size_t>(i * (n + 1));
-        halveLine(&q[0][k], &q[1][k], n, 1);
-        halveLine(&q[2][k], &q[3][k], n, 1);
-    }
+std::array<ControlNet<kRows>, 4> quarterNets(const ControlNet<kRows>& net, int m, int n) {
+    std::array<ControlNet<kRows>, 4> q;
+    q[0] = net;
+    q[2] = halveNet(q[0], m, n, true);
+    q[1] = halveNet(q[0], m, n, false);
+    q[3] = halveNet(q[2], m, n, false);
     return q;
 }
 
@@ -234,12 +210,12 @@ PatchCell cellOf(const ViewPatch& patch, int index) {
     cell.m = patch.x.m;
     cell.n = patch.x.n;
     const bool isRational = patch.w.c.size() > 1;
+    cell.points.resize(patch.x.c.size());
+    if (isRational) cell.homogeneous.resize(patch.x.c.size());
     for (std::size_t k = 0; k < patch.x.c.size(); ++k) {
+        cell.points[k] = {patch.x.c[k], patch.y.c[k], patch.z.c[k]};
         if (isRational) {
-            cell.homogeneous.push_back(
-                {patch.x.c[k], patch.y.c[k], patch.z.c[k], patch.w.c[k]});
-        } else {
-            cell.points.push_back({patch.x.c[k], patch.y.c[k], patch.z.c[k]});
+            cell.homogeneous[k] = {patch.x.c[k], patch.y.c[k], patch.z.c[k], patch.w.c[k]};
         }
     }
     boundCell(cell);
@@ -250,12 +226,12 @@ PatchCell cellOf(const ViewPatch& patch, int index) {
 std::array<PatchCell, 4> quartersOf(const PatchCell& cell) {
     std::array<PatchCell, 4> result;
     const bool isRational = !cell.homogeneous.empty();
-    std::array<ControlPoints<4>, 4> homogeneous;
-    std::array<ControlPoints<3>, 4> points;
+    std::array<ControlNet<4>, 4> homogeneous;
+    std::array<ControlNet<3>, 4> points;
     if (isRational) {
-        homogeneous = quarterPoints(cell.homogeneous, cell.m, cell.n);
+        homogeneous = quarterNets(cell.homogeneous, cell.m, cell.n);
     } else {
-        points = quarterPoints(cell.points, cell.m, cell.n);
+        points = quarterNets(cell.points, cell.m, cell.n);
     }
     for (std::size_t q = 0; q < 4; ++q) {
         PatchCell& quarter = result[q];

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "outline/control_net.h"
 #include "outline/vectors.h"
 #include "outline/view_patch.h"
 
 #include <array>
-#include <vector>
 
 namespace bandvox {
 
@@ -14,8 +14,8 @@ struct PatchCell {
     int patch = 0;
     double u0 = 0, v0 = 0, size = 1;
     int m = 0, n = 0;                                 ///< degrees by u and v
-    std::vector<std::array<double, 4>> homogeneous;   ///< (wx, wy, wz, w); empty if not rational
-    std::vector<Vec> points;                          ///< (m + 1) * (n + 1), [u][v]
+    ControlNet<4> homogeneous;   ///< (wx, wy, wz, w); empty if not rational
+    ControlNet<3> points;        ///< (m + 1) * (n + 1), [u][v]
     Vec low{}, high{};
     Cone alongU, alongV;  ///< of the derivatives by u and v
     Cone normals;

@@ -85,7 +85,7 @@ class CurveSight {
 
     int hiddenAt(double length) const {
         const CurvePoint p = pointAt(length);
-        return mSheets.countBefore(p.x, p.y, p.z - kDepthMargin * mSampling.size);
+        return mSheets.countBefore(p, kDepthMargin * mSampling.size);
     }
 
     void examine(double from, double to) {
