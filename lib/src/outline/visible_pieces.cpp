@@ -167,13 +167,27 @@ class CurveSight {
         return result;
     }
 
+    // A corner is one of several points in the same place.
+    CurvePoint endAt(double length) const {
+        if (length == 0) return mCurve.points.front();
+        if (length == mRuler.whole()) return mCurve.points.back();
+        CurvePoint end = pointAt(length);
+        const std::size_t i = mRuler.parts(mRuler.placeAt(length)).first;
+        const std::size_t last = std::min(i + 2, mCurve.points.size() - 1);
+        for (std::size_t k = i > 0 ? i - 1 : 0; k <= last; ++k) {
+            const double away = std::abs(mRuler.lengthAt(static_cast<double>(k)) - length);
+            end.corner |= mCurve.points[k].corner && away < 1e-9 * mSampling.size;
+        }
+        return end;
+    }
+
     Curve part(const Run& run) const {
         Curve part{.kind = mCurve.kind, .object = mCurve.object};
         const auto begin = mRuler.parts(mRuler.placeAt(run.from)).first + 1;
         const auto end = mRuler.parts(mRuler.placeAt(run.to)).first;
-        part.points.push_back(run.from == 0 ? mCurve.points.front() : pointAt(run.from));
+        part.points.push_back(endAt(run.from));
         for (std::size_t i = begin; i <= end; ++i) part.points.push_back(mCurve.points[i]);
-        part.points.push_back(run.to == mRuler.whole() ? mCurve.points.back() : pointAt(run.to));
+        part.points.push_back(endAt(run.to));
         return part;
     }
 
