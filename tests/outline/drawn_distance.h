@@ -85,9 +85,9 @@ inline double largestDistance(const Outline& outline, const PatchModel& model,
     const double size = std::max(options.width, options.height);
     std::vector<ViewPatch> seen;
     for (const BezierPatch& patch : model.patches) seen.push_back(seenBy(view, patch, size));
-    const auto exact = surfaceCurves(model.patches, seen, options,
-                                     {.flatness = 0.01 * options.tolerance, .size = size},
-                                     silentProgress());
+    const auto exact =
+        surfaceCurves(model.patches, seen, options,
+                      {.flatness = 0.01 * options.tolerance, .size = size}, silentProgress());
     std::vector<ChainGrid> truth(4, ChainGrid(size)), drawn(4, ChainGrid(size));
     for (const Curve& curve : exact) {
         for (std::size_t i = 1; i < curve.points.size(); ++i) {
@@ -111,7 +111,8 @@ inline double largestDistance(const Outline& outline, const PatchModel& model,
     }
     for (const Curve& curve : exact) {
         for (const CurvePoint& p : curve.points) {
-            worst = std::max(worst, drawn[static_cast<std::size_t>(curve.kind)].distance({p.x, p.y}));
+            worst =
+                std::max(worst, drawn[static_cast<std::size_t>(curve.kind)].distance({p.x, p.y}));
         }
     }
     return worst;

@@ -25,8 +25,8 @@ class ExactSheets {
         }
     }
 
-    /// The depths at which the line of sight through (x, y) meets patches before depth z, ascending;
-    /// a place on a border of two patches counts once.
+    /// The depths at which the line of sight through (x, y) meets patches before depth z,
+    /// ascending; a place on a border of two patches counts once.
     std::vector<double> depthsBefore(double x, double y, double z) const {
         std::vector<Real> depths;
         for (const Part& part : mParts) descend(part, {x, y, z}, depths);
@@ -147,10 +147,10 @@ class ExactSheets {
         std::vector<Point> slopes;
         for (int i = 0; i <= part.m; ++i) {
             const auto first = static_cast<std::size_t>(i * (part.n + 1));
-            const auto [p, d] = line({part.points.begin() + static_cast<std::ptrdiff_t>(first),
-                                      part.points.begin() +
-                                          static_cast<std::ptrdiff_t>(first) + part.n + 1},
-                                     v);
+            const auto [p, d] =
+                line({part.points.begin() + static_cast<std::ptrdiff_t>(first),
+                      part.points.begin() + static_cast<std::ptrdiff_t>(first) + part.n + 1},
+                     v);
             rows.push_back(p);
             slopes.push_back(d);
         }

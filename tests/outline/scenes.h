@@ -43,12 +43,12 @@ inline std::vector<BezierPatch> twoTeapots() {
 /// Two tori whose tubes pass through each other.
 inline std::vector<BezierPatch> twoTori() {
     return together(torus(1, 0.4), mapped(torus(0.9, 0.33), {{{0.31, 0.11, 0.944, 0.83},
-                                                             {-0.78, 0.6, 0.18, 0.21},
-                                                             {-0.546, -0.79, 0.272, 0.13}}}));
+                                                              {-0.78, 0.6, 0.18, 0.21},
+                                                              {-0.546, -0.79, 0.272, 0.13}}}));
 }
 
-/// A tube along a helix, the thicker and the nearer to the axis the higher, open at both ends: where
-/// it is thicker than a turn is high it passes through itself.
+/// A tube along a helix, the thicker and the nearer to the axis the higher, open at both ends:
+/// where it is thicker than a turn is high it passes through itself.
 inline std::vector<BezierPatch> spiral() {
     constexpr int kAlong = 21, kAround = 8, kDegree = 3;
     BsplineNet net{.degree = {kDegree, kDegree}, .count = {kAlong, kAround + kDegree}};
@@ -64,8 +64,8 @@ inline std::vector<BezierPatch> spiral() {
         for (int j = 0; j < kAround + kDegree; ++j) {
             const double angle = -2 * std::numbers::pi * j / kAround;
             const double r = radius + tube * std::cos(angle);
-            net.control.push_back({r * std::cos(turn), r * std::sin(turn),
-                                   1.55 * share + tube * std::sin(angle), 1});
+            net.control.push_back(
+                {r * std::cos(turn), r * std::sin(turn), 1.55 * share + tube * std::sin(angle), 1});
         }
     }
     return bezierPatches(net);

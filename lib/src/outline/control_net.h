@@ -60,7 +60,8 @@ class ControlNet {
     std::vector<Point> mMany;
 };
 
-/// Replaces points of a curve, `step` apart, by those of its first half; writes those of the second.
+/// Replaces points of a curve, `step` apart, by those of its first half; writes those of the
+/// second.
 template <std::size_t kRows>
 void halveLine(std::array<double, kRows>* low, std::array<double, kRows>* high, int degree,
                std::ptrdiff_t step) {
@@ -75,8 +76,8 @@ void halveLine(std::array<double, kRows>* low, std::array<double, kRows>* high, 
     }
 }
 
-/// Replaces a net of (m + 1) * (n + 1) points, [u][v], by its half of low u, or v; returns the other
-/// one.
+/// Replaces a net of (m + 1) * (n + 1) points, [u][v], by its half of low u, or v; returns the
+/// other one.
 template <std::size_t kRows>
 ControlNet<kRows> halveNet(ControlNet<kRows>& net, int m, int n, bool alongU) {
     ControlNet<kRows> high(net.size());

@@ -193,9 +193,9 @@ class BranchSearch {
             const auto [u, v] = onSide(beside.side.side, beside.reversed ? 1 - along : along);
             const int next = beside.side.patch;
             const bool isOrdered = next <= other;
-            const MeetingPlace guess =
-                isOrdered ? MeetingPlace{u, v, end.place[at], end.place[at + 1]}
-                          : MeetingPlace{end.place[at], end.place[at + 1], u, v};
+            const MeetingPlace guess = isOrdered
+                                           ? MeetingPlace{u, v, end.place[at], end.place[at + 1]}
+                                           : MeetingPlace{end.place[at], end.place[at + 1], u, v};
             const auto pair = mPairOf.find({std::min(next, other), std::max(next, other)});
             if (pair == mPairOf.end()) continue;
             MeetingPair& into = mPairs[pair->second];

@@ -25,8 +25,9 @@ class MeetingTracer {
                              .v = place[1],
                              .other = pair.second,
                              .s = place[2],
-                             .t = place[3]};
-            if (!meet(mSeen, point)) continue;
+                             .t = place[3],
+                             .rule = CurveRule::Meeting};
+            placeMeeting(mSeen, point);
             if (!curve.points.empty()) refine(curve.points.back(), point, 0, curve.points);
             curve.points.push_back(point);
         }
@@ -55,9 +56,8 @@ class MeetingTracer {
 
 }  // namespace
 
-std::vector<Curve> meetingCurves(std::span<const ViewPatch> seen,
-                                 std::span<const SharedSide> sides, const CurveSampling& sampling,
-                                 Progress& progress) {
+std::vector<Curve> meetingCurves(std::span<const ViewPatch> seen, std::span<const SharedSide> sides,
+                                 const CurveSampling& sampling, Progress& progress) {
     std::vector<Curve> curves;
     const MeetingTracer tracer(seen, sampling);
     for (const MeetingPair& pair : meetingBranches(seen, sides, sampling.size, progress)) {

@@ -92,9 +92,8 @@ std::array<MeetingMarch::Row, 3> MeetingMarch::jacobian(const MeetingPlace& at,
                                                         std::array<double, 3>& gap) const {
     const ViewPoint p = mA.at(at[0], at[1]), q = mB.at(at[2], at[3]);
     gap = {q.x - p.x, q.y - p.y, q.z - p.z};
-    std::array<Row, 3> rows{{{p.xu, p.xv, -q.xu, -q.xv},
-                             {p.yu, p.yv, -q.yu, -q.yv},
-                             {p.zu, p.zv, -q.zu, -q.zv}}};
+    std::array<Row, 3> rows{
+        {{p.xu, p.xv, -q.xu, -q.xv}, {p.yu, p.yv, -q.yu, -q.yv}, {p.zu, p.zv, -q.zu, -q.zv}}};
     for (Row& row : rows) {
         for (std::size_t k = 0; k < 4; ++k) row[k] /= mWeights[k];
     }
@@ -124,8 +123,8 @@ bool MeetingMarch::isProper(const MeetingPlace& p) const {
         return std::array{n[0] / length, n[1] / length, n[2] / length};
     };
     const auto n = normal(mA.at(p[0], p[1])), m = normal(mB.at(p[2], p[3]));
-    const double sine = std::hypot(n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2],
-                                   n[0] * m[1] - n[1] * m[0]);
+    const double sine =
+        std::hypot(n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2], n[0] * m[1] - n[1] * m[0]);
     // Surfaces that touch do not pass through each other.
     constexpr double kLeastAngle = 1e-7;
     return sine > kLeastAngle;

@@ -269,8 +269,7 @@ CellRelation relationOf(const PatchCell& a, const PatchCell& b, double reach) {
                 }
             }
         }
-        return meetOnlyInCorner(a, b, *corner, reach) ? CellRelation::Apart
-                                                      : CellRelation::Unknown;
+        return meetOnlyInCorner(a, b, *corner, reach) ? CellRelation::Apart : CellRelation::Unknown;
     }
     return areApart(a.normals, b.normals) ? CellRelation::Transversal : CellRelation::Unknown;
 }

@@ -13,16 +13,14 @@ namespace bandvox {
 struct PatchCell {
     int patch = 0;
     double u0 = 0, v0 = 0, size = 1;
-    int m = 0, n = 0;                                 ///< degrees by u and v
-    ControlNet<4> homogeneous;   ///< (wx, wy, wz, w); empty if not rational
-    ControlNet<3> points;        ///< (m + 1) * (n + 1), [u][v]
+    int m = 0, n = 0;           ///< degrees by u and v
+    ControlNet<4> homogeneous;  ///< (wx, wy, wz, w); empty if not rational
+    ControlNet<3> points;       ///< (m + 1) * (n + 1), [u][v]
     Vec low{}, high{};
     Cone alongU, alongV;  ///< of the derivatives by u and v
     Cone normals;
 
-    const Vec& at(int i, int j) const {
-        return points[static_cast<std::size_t>(i * (n + 1) + j)];
-    }
+    const Vec& at(int i, int j) const { return points[static_cast<std::size_t>(i * (n + 1) + j)]; }
     double extent() const;
 
     /// Whether no two places of the cell are in the same place.
@@ -36,8 +34,8 @@ std::array<PatchCell, 4> quartersOf(const PatchCell& cell);
 
 /// What is known of where two cells meet.
 enum class CellRelation {
-    Apart,       ///< nowhere, but for a side or a corner that they share
-    Transversal, ///< their normals are nowhere parallel: no curve closes, or touches
+    Apart,        ///< nowhere, but for a side or a corner that they share
+    Transversal,  ///< their normals are nowhere parallel: no curve closes, or touches
     Unknown
 };
 

@@ -19,8 +19,8 @@ struct PatchSide {
 struct SharedSide {
     PatchSide a;
     std::optional<PatchSide> b;  ///< none: the surface ends there
-    bool reversed = false;   ///< b's parameter is 1 - t where a's is t
-    bool isCrowded = false;  ///< more than two patches meet there
+    bool reversed = false;       ///< b's parameter is 1 - t where a's is t
+    bool isCrowded = false;      ///< more than two patches meet there
 };
 
 /// The sides of all patches that are no points, each once.

@@ -9,11 +9,11 @@
 namespace bandvox {
 namespace {
 
-constexpr int kCells = 64;            // along a side of the page
-constexpr int kDepthOfParts = 4;      // to which patches are cut in advance
-constexpr double kSmallest = 1e-7;    // part of a patch that is cut no more
+constexpr int kCells = 64;                   // along a side of the page
+constexpr int kDepthOfParts = 4;             // to which patches are cut in advance
+constexpr double kSmallest = 1e-7;           // part of a patch that is cut no more
 constexpr double kSmallestOwn = 1.0 / 4096;  // the same around the point itself
-constexpr double kLargestBend = 0.4;  // of derivatives, relative to the mean
+constexpr double kLargestBend = 0.4;         // of derivatives, relative to the mean
 
 using Part = Sheets::Part;
 

@@ -31,9 +31,9 @@ inline double lengthOf(const Vec& a) {
 
 /// All directions within an angle of an axis.
 struct Cone {
-    Vec axis{};                             ///< length 1
-    double halfAngle = std::numbers::pi;    ///< π: any direction
-    bool isEmpty = true;                    ///< no direction at all
+    Vec axis{};                           ///< length 1
+    double halfAngle = std::numbers::pi;  ///< π: any direction
+    bool isEmpty = true;                  ///< no direction at all
 
     bool isConvex() const { return halfAngle < 0.5 * std::numbers::pi; }
 };
