@@ -99,7 +99,7 @@ inline double largestDistance(const Outline& outline, const PatchModel& model,
     for (const OutlinePath& path : outline.paths) {
         const auto kind = static_cast<std::size_t>(path.kind);
         for (std::size_t piece = 0; 3 * piece + 3 < path.points.size(); ++piece) {
-            constexpr int kSamples = 40;
+            constexpr int kSamples = 400;
             Place last = onCubic(path, piece, 0);
             for (int k = 1; k <= kSamples; ++k) {
                 const Place p = onCubic(path, piece, double(k) / kSamples);

@@ -120,16 +120,25 @@ inline Findings checkVisibility(const DrawnView& drawn) {
     return sum;
 }
 
-/// Distance of a place from lines, but for the piece `except`.
-inline double distanceFromLines(const DrawnView& drawn, std::size_t except, const CurvePoint& p,
+/// Distance of a piece's end from lines, those of the piece itself but for what is near the end.
+inline double distanceFromLines(const DrawnView& drawn, std::size_t own, const CurvePoint& p,
                                 bool areSeen) {
     double nearest = HUGE_VAL;
     for (std::size_t k = 0; k < drawn.pieces.size(); ++k) {
-        if (k == except || (areSeen && drawn.pieces[k].hidden > 0)) continue;
+        if (areSeen && drawn.pieces[k].hidden > 0) continue;
         const auto& points = drawn.pieces[k].curve.points;
+        const bool isStart = &p == &points.front();
+        double length = 0, whole = 0;
+        for (std::size_t i = 1; i < points.size(); ++i) {
+            whole += std::hypot(points[i].x - points[i - 1].x, points[i].y - points[i - 1].y);
+        }
         for (std::size_t i = 1; i < points.size(); ++i) {
             const CurvePoint &a = points[i - 1], &b = points[i];
             const double dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy;
+            const double before = length;
+            length += std::sqrt(square);
+            const double away = isStart ? before : whole - length;
+            if (k == own && away < 2 * drawn.pixel) continue;
             const double along = (p.x - a.x) * dx + (p.y - a.y) * dy;
             const double share = square > 0 ? std::clamp(along / square, 0.0, 1.0) : 0;
             nearest = std::min(nearest, std::hypot(a.x + share * dx - p.x, a.y + share * dy - p.y));

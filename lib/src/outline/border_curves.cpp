@@ -60,7 +60,9 @@ class SideSampler {
                            std::max(length, 1e-12 * mSampling.size);
         const bool isSmooth =
             std::abs(a.tx * b.tx + a.ty * b.ty) > 0.98 || length < 0.1 * mSampling.flatness;
-        const bool isFlat = off < mSampling.flatness && length < 0.02 * mSampling.size && isSmooth;
+        const bool isFlat = off < mSampling.flatness &&
+                            bowBetween(a, b) < 1.3 * mSampling.flatness &&
+                            length < 0.02 * mSampling.size && isSmooth;
         if (depth > 24 || (isFlat && depth > 2)) {
             points.push_back(b);
             return;

@@ -80,7 +80,7 @@ class StretchSampler {
 
     // Appends the points after a, up to b.
     void refine(const LedPoint& a, LedPoint b, int depth) {
-        constexpr double kSmallTurn = 0.98;
+        constexpr double kSmallTurn = 0.98, kBow = 1.3;
         constexpr int kMostHalvings = 40;
         alignWith(a, b);
         const double width = b.lead - a.lead;
@@ -106,6 +106,7 @@ class StretchSampler {
         }
         const double length = std::hypot(b.point.x - a.point.x, b.point.y - a.point.y);
         const bool isFlat = distanceFromChord(a, b, middle) < mSampling.flatness &&
+                            bowBetween(a.point, b.point) < kBow * mSampling.flatness &&
                             length < 0.02 * mSampling.size && depth > 1;
         if (!isNarrow && !isFlat) return divide(a, middle, b, depth);
         mPoints.push_back(b.point);

@@ -44,7 +44,8 @@ class MeetingTracer {
         if (depth > 12 || length < mSampling.flatness) return;
         const CurvePoint middle = pointBetween(mSeen, a, b, 0.5);
         const double off = std::abs(dx * (middle.y - a.y) - dy * (middle.x - a.x)) / length;
-        if (off < mSampling.flatness && length < 0.02 * mSampling.size) return;
+        const bool isFlat = off < mSampling.flatness && bowBetween(a, b) < 1.3 * mSampling.flatness;
+        if (isFlat && length < 0.02 * mSampling.size) return;
         refine(a, middle, depth + 1, points);
         points.push_back(middle);
         refine(middle, b, depth + 1, points);
