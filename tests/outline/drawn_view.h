@@ -66,7 +66,7 @@ inline Findings checkPiece(const DrawnView& drawn, const VisiblePiece& piece,
                            const ExactSheets& oracle) {
     const auto& [curve, hidden] = piece;
     // The curve's own surface is met, too, twice at a fold.
-    const double margin = 2e-6 * drawn.size;
+    const double margin = 1.5e-7 * drawn.size;
     Findings result;
     double length = 0;
     std::vector<double> lengths{0};

@@ -216,18 +216,24 @@ void appendPoint(SmoothRun& run, const Place& point, const Place& direction) {
 }
 
 // A cubic is not to leave the curve between its points. Those and the directions tell where it is
-// there, far more exactly than the chord.
-void appendMiddle(SmoothRun& run, const Place& a, const Place& b, const Place& da,
-                  const Place& db) {
-    const double handle = lengthOf(b - a) / 3;
-    const Cubic cubic{{a, a + handle * da, b - handle * db, b}};
-    const Place slope = cubic.slope(0.5);
-    const double length = lengthOf(slope);
-    if (length > 0) appendPoint(run, cubic.at(0.5), (1 / length) * slope);
+// there, far more exactly than the chord. `apart`: of what is appended, at most.
+void appendBetween(SmoothRun& run, const SmoothRun& ends, double apart) {
+    constexpr double kMost = 8;
+    const Place a = ends.points[0], b = ends.points[1];
+    const double length = lengthOf(b - a), handle = length / 3;
+    const Cubic cubic{{a, a + handle * ends.directions[0], b - handle * ends.directions[1], b}};
+    const int count = static_cast<int>(std::clamp(std::ceil(length / apart), 1.0, kMost));
+    for (int k = 1; k <= count; ++k) {
+        const double t = double(k) / (count + 1);
+        const Place slope = cubic.slope(t);
+        const double speed = lengthOf(slope);
+        if (speed > 0) appendPoint(run, cubic.at(t), (1 / speed) * slope);
+    }
 }
 
 // Points that are not in the same place, each with its direction.
-SmoothRun runOf(const std::vector<CurvePoint>& points, std::size_t first, std::size_t last) {
+SmoothRun runOf(const std::vector<CurvePoint>& points, std::size_t first, std::size_t last,
+                double gap) {
     SmoothRun run;
     std::vector<const CurvePoint*> apart;
     double extent = 0;
@@ -248,16 +254,19 @@ SmoothRun runOf(const std::vector<CurvePoint>& points, std::size_t first, std::s
         apart.push_back(&p);
     }
     if (apart.size() < 2) return run;
-    Place before{}, directionBefore{};
+    SmoothRun pair;
     for (std::size_t k = 0; k < apart.size(); ++k) {
         const bool isLast = k + 1 == apart.size();
         const auto [x, y] = directionTowards(*apart[k], *apart[isLast ? k - 1 : k + 1]);
         const Place point{apart[k]->x, apart[k]->y};
-        const Place direction = isLast ? Place{-x, -y} : Place{x, y};
-        if (k > 0) appendMiddle(run, before, point, directionBefore, direction);
-        appendPoint(run, point, direction);
-        before = point;
-        directionBefore = direction;
+        appendPoint(pair, point, isLast ? Place{-x, -y} : Place{x, y});
+        if (k > 0) {
+            appendBetween(run, pair, gap);
+            pair.points.erase(pair.points.begin());
+            pair.directions.erase(pair.directions.begin());
+            pair.lengths.erase(pair.lengths.begin());
+        }
+        appendPoint(run, point, pair.directions.back());
     }
     return run;
 }
@@ -282,14 +291,14 @@ std::vector<CurvePoint> fromCorner(const Curve& curve) {
 
 std::vector<std::array<double, 2>> fitCubics(const Curve& curve, double tolerance) {
     // What is not seen between points is little.
-    constexpr double kShare = 0.9;
+    constexpr double kShare = 0.9, kGap = 100;
     const double least = kShare * tolerance;
     const std::vector<CurvePoint> points = fromCorner(curve);
     std::vector<std::array<double, 2>> path;
     std::size_t first = 0;
     for (std::size_t i = 1; i < points.size(); ++i) {
         if (!points[i].corner && i + 1 < points.size()) continue;
-        SmoothRun run = runOf(points, first, i);
+        SmoothRun run = runOf(points, first, i, kGap * tolerance);
         first = i;
         if (run.points.size() < 2) continue;
         const bool isLoop =

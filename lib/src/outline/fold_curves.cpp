@@ -105,9 +105,13 @@ class StretchSampler {
             }
         }
         const double length = std::hypot(b.point.x - a.point.x, b.point.y - a.point.y);
+        const auto isOnChord = [&](double share) {
+            return distanceFromChord(a, b, at(a.lead + share * width)) < mSampling.flatness;
+        };
+        // A wave may pass through the chord's middle.
         const bool isFlat = distanceFromChord(a, b, middle) < mSampling.flatness &&
                             bowBetween(a.point, b.point) < kBow * mSampling.flatness &&
-                            length < 0.02 * mSampling.size && depth > 1;
+                            length < 0.02 * mSampling.size && depth > 1 && isOnChord(0.25);
         if (!isNarrow && !isFlat) return divide(a, middle, b, depth);
         mPoints.push_back(b.point);
     }

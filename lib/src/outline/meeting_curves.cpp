@@ -41,10 +41,15 @@ class MeetingTracer {
                 std::vector<CurvePoint>& points) const {
         const double dx = b.x - a.x, dy = b.y - a.y;
         const double length = std::hypot(dx, dy);
-        if (depth > 12 || length < mSampling.flatness) return;
+        // Directions of both points have the same sense: where they are opposite the curve, seen
+        // nearly along itself, turns back.
+        const bool isTurned = a.tx * b.tx + a.ty * b.ty < 0.7;
+        if (depth > 12 || (length < mSampling.flatness && !isTurned)) return;
         const CurvePoint middle = pointBetween(mSeen, a, b, 0.5);
-        const double off = std::abs(dx * (middle.y - a.y) - dy * (middle.x - a.x)) / length;
-        const bool isFlat = off < mSampling.flatness && bowBetween(a, b) < 1.3 * mSampling.flatness;
+        const double off = std::abs(dx * (middle.y - a.y) - dy * (middle.x - a.x)) /
+                           std::max(length, 1e-12 * mSampling.size);
+        const bool isFlat = !isTurned && off < mSampling.flatness &&
+                            bowBetween(a, b) < 1.3 * mSampling.flatness;
         if (isFlat && length < 0.02 * mSampling.size) return;
         refine(a, middle, depth + 1, points);
         points.push_back(middle);

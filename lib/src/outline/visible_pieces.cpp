@@ -14,7 +14,7 @@ namespace {
 
 // A surface in front has to be nearer by this part of the page's size, since the curve's own
 // surface is met there, too, twice where it folds.
-constexpr double kDepthMargin = 1e-6;
+constexpr double kDepthMargin = 1e-7;
 
 /// A curve by its length.
 class CurveRuler {
