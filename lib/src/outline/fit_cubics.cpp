@@ -25,7 +25,7 @@ double dot(const Place& a, const Place& b) {
     return a[0] * b[0] + a[1] * b[1];
 }
 double lengthOf(const Place& a) {
-    return std::hypot(a[0], a[1]);
+    return std::sqrt(a[0] * a[0] + a[1] * a[1]);
 }
 
 struct Cubic {
@@ -192,7 +192,7 @@ std::vector<Cubic> fitRun(const SmoothRun& run, double tolerance) {
     std::vector<Cubic> best = fitGreedily(run, tolerance, run.points.size());
     if (best.size() == 1) return best;
     double low = 0.1 * tolerance, high = tolerance;
-    for (int step = 0; step < 5; ++step) {
+    for (int step = 0; step < 3; ++step) {
         const double middle = std::sqrt(low * high);
         std::vector<Cubic> tighter = fitGreedily(run, middle, best.size());
         if (tighter.empty()) {
@@ -216,13 +216,13 @@ void appendPoint(SmoothRun& run, const Place& point, const Place& direction) {
 }
 
 // A cubic is not to leave the curve between its points. Those and the directions tell where it is
-// there, far more exactly than the chord. `apart`: of what is appended, at most.
-void appendBetween(SmoothRun& run, const SmoothRun& ends, double apart) {
-    constexpr double kMost = 8;
+// there, far more exactly than the chord. `apart`: of what is appended, about.
+void appendBetween(SmoothRun& run, const SmoothRun& ends, double apart, int fewest) {
+    constexpr int kMost = 8;
     const Place a = ends.points[0], b = ends.points[1];
     const double length = lengthOf(b - a), handle = length / 3;
     const Cubic cubic{{a, a + handle * ends.directions[0], b - handle * ends.directions[1], b}};
-    const int count = static_cast<int>(std::clamp(std::ceil(length / apart), 1.0, kMost));
+    const int count = std::clamp(static_cast<int>(length / apart), fewest, kMost);
     for (int k = 1; k <= count; ++k) {
         const double t = double(k) / (count + 1);
         const Place slope = cubic.slope(t);
@@ -254,6 +254,8 @@ SmoothRun runOf(const std::vector<CurvePoint>& points, std::size_t first, std::s
         apart.push_back(&p);
     }
     if (apart.size() < 2) return run;
+    // Where there are many points a cubic is held by several of them.
+    constexpr std::size_t kMany = 24;
     SmoothRun pair;
     for (std::size_t k = 0; k < apart.size(); ++k) {
         const bool isLast = k + 1 == apart.size();
@@ -261,7 +263,7 @@ SmoothRun runOf(const std::vector<CurvePoint>& points, std::size_t first, std::s
         const Place point{apart[k]->x, apart[k]->y};
         appendPoint(pair, point, isLast ? Place{-x, -y} : Place{x, y});
         if (k > 0) {
-            appendBetween(run, pair, gap);
+            appendBetween(run, pair, gap, apart.size() < kMany ? 1 : 0);
             pair.points.erase(pair.points.begin());
             pair.directions.erase(pair.directions.begin());
             pair.lengths.erase(pair.lengths.begin());

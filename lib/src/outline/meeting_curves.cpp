@@ -48,8 +48,8 @@ class MeetingTracer {
         const CurvePoint middle = pointBetween(mSeen, a, b, 0.5);
         const double off = std::abs(dx * (middle.y - a.y) - dy * (middle.x - a.x)) /
                            std::max(length, 1e-12 * mSampling.size);
-        const bool isFlat = !isTurned && off < mSampling.flatness &&
-                            bowBetween(a, b) < 1.3 * mSampling.flatness;
+        const bool isFlat =
+            !isTurned && off < mSampling.flatness && bowBetween(a, b) < 1.3 * mSampling.flatness;
         if (isFlat && length < 0.02 * mSampling.size) return;
         refine(a, middle, depth + 1, points);
         points.push_back(middle);

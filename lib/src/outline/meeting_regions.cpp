@@ -10,7 +10,7 @@ constexpr double kFlat = 0.3;  // radians by which a cell's derivatives turn at 
 constexpr std::size_t kMostPairs = 4096;
 constexpr double kLeastSize = 1.0 / 8192;  // of a cell, in parameters
 
-using CellPointer = std::shared_ptr<const PatchCell>;
+using CellPointer = std::shared_ptr<PatchCell>;
 
 /// Divides pairs of cells, all of a depth before the next.
 class RegionSearch {
@@ -19,15 +19,18 @@ class RegionSearch {
         : mLeast(least), mReach(reach), mShares(shares) {}
 
     std::vector<MeetingRegion> search(const PatchCell& a, const PatchCell& b) {
-        auto first = std::make_shared<const PatchCell>(a);
+        auto first = std::make_shared<PatchCell>(a);
         const bool isSelf = a.patch == b.patch;
-        auto second = isSelf ? first : std::make_shared<const PatchCell>(b);
+        auto second = isSelf ? first : std::make_shared<PatchCell>(b);
         mPairs.emplace_back(std::move(first), std::move(second));
         while (!mPairs.empty()) {
             const auto pairs = std::exchange(mPairs, {});
             // So many do not get fewer: both are the same surface, or nearly.
             const bool isLast = pairs.size() > kMostPairs;
             for (const auto& [p, q] : pairs) {
+                if (p != q && areBoxesApart(*p, *q, mReach)) continue;
+                completeCell(*p);
+                completeCell(*q);
                 if (p == q) {
                     divideSelf(*p);
                 } else {
@@ -51,7 +54,7 @@ class RegionSearch {
         auto quarters = quartersOf(cell);
         std::array<CellPointer, 4> result;
         for (std::size_t q = 0; q < 4; ++q) {
-            result[q] = std::make_shared<const PatchCell>(std::move(quarters[q]));
+            result[q] = std::make_shared<PatchCell>(std::move(quarters[q]));
         }
         return result;
     }

@@ -4,6 +4,7 @@
 #include "outline/patch_cell.h"
 
 #include <optional>
+#include <vector>
 
 namespace bandvox {
 namespace {
@@ -21,28 +22,30 @@ std::array<ControlNet<kRows>, 4> quarterNets(const ControlNet<kRows>& net, int m
 // A cone of directions with lengths; those of no length do not count.
 class ConeMaker {
   public:
+    explicit ConeMaker(std::size_t most) { mDirections.reserve(most); }
+
     void add(const Vec& d) {
         const double length = lengthOf(d);
         mLongest = std::max(mLongest, length);
-        mDirections.push_back(d);
+        mDirections.push_back({d[0], d[1], d[2], length});
     }
-    Cone make() const {
+    Cone make() {
         Cone cone;
-        const double least = 1e-9 * mLongest;
-        Vec sum{};
-        for (const Vec& d : mDirections) {
-            const double length = lengthOf(d);
-            if (length > least) sum = plus(sum, times(1 / length, d));
-        }
-        const double whole = lengthOf(sum);
         if (!(mLongest > 0)) return cone;
         cone.isEmpty = false;
+        const double least = 1e-9 * mLongest;
+        std::erase_if(mDirections, [&](const auto& d) { return !(d[3] > least); });
+        Vec sum{};
+        for (auto& d : mDirections) {
+            for (std::size_t c = 0; c < 3; ++c) sum[c] += d[c] /= d[3];
+        }
+        const double whole = lengthOf(sum);
         if (!(whole > 1e-6)) return cone;
         cone.axis = times(1 / whole, sum);
         double cosine = 1;
-        for (const Vec& d : mDirections) {
-            const double length = lengthOf(d);
-            if (length > least) cosine = std::min(cosine, dot(d, cone.axis) / length);
+        for (const auto& d : mDirections) {
+            cosine =
+                std::min(cosine, d[0] * cone.axis[0] + d[1] * cone.axis[1] + d[2] * cone.axis[2]);
         }
         // Rounding is not to make a cone of one direction a point.
         cone.halfAngle = std::acos(std::clamp(cosine, -1.0, 1.0)) + 1e-7;
@@ -50,7 +53,7 @@ class ConeMaker {
     }
 
   private:
-    std::vector<Vec> mDirections;
+    std::vector<std::array<double, 4>> mDirections;
     double mLongest = 0;
 };
 
@@ -89,7 +92,7 @@ void boundCell(PatchCell& cell) {
 }
 
 void makeCones(PatchCell& cell) {
-    ConeMaker u, v;
+    ConeMaker u(cell.points.size()), v(cell.points.size());
     for (int i = 0; i <= cell.m; ++i) {
         for (int j = 0; j <= cell.n; ++j) {
             if (i < cell.m) u.add(minus(cell.at(i + 1, j), cell.at(i, j)));
@@ -99,6 +102,7 @@ void makeCones(PatchCell& cell) {
     cell.alongU = u.make();
     cell.alongV = v.make();
     cell.normals = normalCone(cell.alongU, cell.alongV);
+    cell.hasCones = true;
 }
 
 // Of the control points' sides along a direction.
@@ -156,7 +160,7 @@ Cone awayFrom(const PatchCell& cell, int side) {
 // A place of a and one of b differ by a step across the side, from both cells, and one along it:
 // if these cannot cancel, both cells meet only in the side.
 bool meetOnlyInSide(const PatchCell& a, int sideA, const PatchCell& b, int sideB) {
-    ConeMaker side;
+    ConeMaker side(static_cast<std::size_t>(lastOf(a, sideA)));
     for (int k = 0; k < lastOf(a, sideA); ++k) {
         side.add(minus(sidePoint(a, sideA, k + 1), sidePoint(a, sideA, k)));
     }
@@ -244,17 +248,23 @@ std::array<PatchCell, 4> quartersOf(const PatchCell& cell) {
         quarter.homogeneous = std::move(homogeneous[q]);
         quarter.points = std::move(points[q]);
         boundCell(quarter);
-        makeCones(quarter);
     }
     return result;
 }
 
-CellRelation relationOf(const PatchCell& a, const PatchCell& b, double reach) {
+void completeCell(PatchCell& cell) {
+    if (!cell.hasCones) makeCones(cell);
+}
+
+bool areBoxesApart(const PatchCell& a, const PatchCell& b, double reach) {
     for (std::size_t c = 0; c < 3; ++c) {
-        if (a.low[c] > b.high[c] + reach || b.low[c] > a.high[c] + reach) {
-            return CellRelation::Apart;
-        }
+        if (a.low[c] > b.high[c] + reach || b.low[c] > a.high[c] + reach) return true;
     }
+    return false;
+}
+
+CellRelation relationOf(const PatchCell& a, const PatchCell& b, double reach) {
+    if (areBoxesApart(a, b, reach)) return CellRelation::Apart;
     for (const PatchCell* cell : {&a, &b}) {
         if (cell->normals.isConvex() && isSeparatedAlong(a, b, cell->normals.axis)) {
             return CellRelation::Apart;

@@ -19,6 +19,7 @@ struct PatchCell {
     Vec low{}, high{};
     Cone alongU, alongV;  ///< of the derivatives by u and v
     Cone normals;
+    bool hasCones = false;  ///< only what is near another cell needs them
 
     const Vec& at(int i, int j) const { return points[static_cast<std::size_t>(i * (n + 1) + j)]; }
     double extent() const;
@@ -27,10 +28,18 @@ struct PatchCell {
     bool isOneToOne() const { return areApart(alongU, alongV); }
 };
 
+/// With its cones.
 PatchCell cellOf(const ViewPatch& patch, int index);
 
 /// The quarters: (low u, low v), (low, high), (high, low), (high, high).
+/// Without cones.
 std::array<PatchCell, 4> quartersOf(const PatchCell& cell);
+
+/// Finds the cones of a cell that has none.
+void completeCell(PatchCell& cell);
+
+/// Whether boxes have nothing in common.
+bool areBoxesApart(const PatchCell& a, const PatchCell& b, double reach);
 
 /// What is known of where two cells meet.
 enum class CellRelation {
@@ -39,7 +48,7 @@ enum class CellRelation {
     Unknown
 };
 
-/// `reach`: within which points are the same.
+/// Of cells with cones. `reach`: within which points are the same.
 CellRelation relationOf(const PatchCell& a, const PatchCell& b, double reach);
 
 }  // namespace bandvox

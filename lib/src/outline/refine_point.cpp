@@ -34,7 +34,8 @@ void ontoFold(const ViewPatch& patch, CurvePoint& point) {
         const double du = -f.value * f.du / square, dv = -f.value * f.dv / square;
         point.u = std::clamp(point.u + du, 0.0, 1.0);
         point.v = std::clamp(point.v + dv, 0.0, 1.0);
-        if (std::max(std::abs(du), std::abs(dv)) < 1e-15) return;
+        // Each step squares the error.
+        if (std::max(std::abs(du), std::abs(dv)) < 1e-9) return;
     }
 }
 

@@ -9,11 +9,11 @@
 namespace bandvox {
 namespace {
 
-constexpr int kCells = 64;                   // along a side of the page
-constexpr int kDepthOfParts = 4;             // to which patches are cut in advance
-constexpr double kSmallest = 1e-7;           // part of a patch that is cut no more
-constexpr double kSmallestOwn = 1.0 / 4096;  // the same around the point itself
-constexpr double kLargestBend = 0.4;         // of derivatives, relative to the mean
+constexpr int kCells = 64;                  // along a side of the page
+constexpr int kDepthOfParts = 4;            // to which patches are cut in advance
+constexpr double kSmallest = 1e-7;          // part of a patch that is cut no more
+constexpr double kSmallestOwn = 1.0 / 512;  // the same around the point itself
+constexpr double kLargestBend = 0.4;        // of derivatives, relative to the mean
 
 using Part = Sheets::Part;
 
@@ -24,7 +24,8 @@ void bound(Part& part) {
     part.x1 = part.y1 = -kInfinity;
     for (std::size_t k = 0; k < part.homogeneous.size(); ++k) {
         const auto& h = part.homogeneous[k];
-        part.points[k] = {h[0] / h[3], h[1] / h[3], h[2] / h[3]};
+        const double scale = 1 / h[3];
+        part.points[k] = {h[0] * scale, h[1] * scale, h[2] * scale};
     }
     for (const auto& p : part.points) {
         part.x0 = std::min(part.x0, p[0]);
