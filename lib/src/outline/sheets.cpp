@@ -1,19 +1,22 @@
 #include "outline/sheets.h"
 
+#include <bandvox/core/parallel.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 
 namespace bandvox {
 namespace {
 
-constexpr int kCells = 64;                  // along a side of the page
-constexpr int kDepthOfParts = 4;            // to which patches are cut in advance
-constexpr double kSmallest = 1e-7;          // part of a patch that is cut no more
-constexpr double kSmallestOwn = 1.0 / 512;  // the same around the point itself
-constexpr double kLargestBend = 0.4;        // of derivatives, relative to the mean
+constexpr int kCells = 64;        // along a side of the page
+constexpr int kDepthOfParts = 4;  // to which patches are cut in advance
+// Of a patch, that is cut no more: it moves a fold by the square of that.
+constexpr double kSmallest = 1.0 / 8192;
+constexpr double kLargestBend = 0.4;  // of derivatives, relative to the mean
 
 using Part = Sheets::Part;
 
@@ -119,16 +122,10 @@ void visitQuarters(const Part& part, const ViewPatch& patch, const IsWanted& isW
 
 /// A line of sight to a point.
 struct Sheets::Sight {
-    double x, y, z;  // z: before which patches are counted
-    int patch;       // the point's own
-    double u, v;
+    double x, y, z;  // before which patches are counted
 
     bool mayMeet(const Part& p) const {
         return x >= p.x0 && x <= p.x1 && y >= p.y0 && y <= p.y1 && p.z0 < z;
-    }
-    bool isOwn(const Part& p) const {
-        return p.patch == patch && u >= p.u0 - p.size && u <= p.u0 + 2 * p.size &&
-               v >= p.v0 - p.size && v <= p.v0 + 2 * p.size;
     }
 };
 
@@ -136,6 +133,7 @@ Sheets::Sheets(std::span<const ViewPatch> patches) : mPatches(patches) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     double right = -kInfinity, bottom = -kInfinity;
     mLeft = mTop = kInfinity;
+    std::vector<Part> wholes;
     for (std::size_t k = 0; k < patches.size(); ++k) {
         const ViewPatch& patch = patches[k];
         if (!patch.hasFold) continue;
@@ -154,8 +152,14 @@ Sheets::Sheets(std::span<const ViewPatch> patches) : mPatches(patches) {
         right = std::max(right, part.x1);
         mTop = std::min(mTop, part.y0);
         bottom = std::max(bottom, part.y1);
-        addPart(std::move(part), 0);
+        wholes.push_back(std::move(part));
     }
+    std::vector<std::vector<Part>> parts(wholes.size());
+    parallelFor(static_cast<std::int64_t>(wholes.size()), [&](std::int64_t i) {
+        const auto k = static_cast<std::size_t>(i);
+        cutPart(std::move(wholes[k]), 0, parts[k]);
+    });
+    for (auto& some : parts) std::move(some.begin(), some.end(), std::back_inserter(mParts));
     mCellWidth = std::max((right - mLeft) / kCells, 1e-300);
     mCellHeight = std::max((bottom - mTop) / kCells, 1e-300);
     mCells.resize(std::size_t{kCells} * kCells);
@@ -169,16 +173,16 @@ Sheets::Sheets(std::span<const ViewPatch> patches) : mPatches(patches) {
     }
 }
 
-void Sheets::addPart(Part part, int depth) {
+void Sheets::cutPart(Part part, int depth, std::vector<Part>& parts) const {
     // Large parts would be asked in vain too often.
     const bool isSmall = depth >= 2;
     if (depth == kDepthOfParts || (isSmall && part.oneToOne)) {
-        mParts.push_back(std::move(part));
+        parts.push_back(std::move(part));
         return;
     }
     visitQuarters(
         part, mPatches[static_cast<std::size_t>(part.patch)], [](const Part&) { return true; },
-        [&](Part quarter) { addPart(std::move(quarter), depth + 1); });
+        [&](Part quarter) { cutPart(std::move(quarter), depth + 1, parts); });
 }
 
 std::size_t Sheets::column(double x) const {
@@ -192,7 +196,7 @@ std::size_t Sheets::row(double y) const {
 }
 
 int Sheets::countCut(const Part& part, const Sight& sight) const {
-    if (part.size < (sight.isOwn(part) ? kSmallestOwn : kSmallest)) return 0;
+    if (part.size < kSmallest) return 0;
     int count = 0;
     visitQuarters(
         part, mPatches[static_cast<std::size_t>(part.patch)],
@@ -238,7 +242,7 @@ int Sheets::countIn(const Part& part, const Sight& sight) const {
 }
 
 int Sheets::countBefore(const CurvePoint& point, double margin) const {
-    const Sight sight{point.x, point.y, point.z - margin, point.patch, point.u, point.v};
+    const Sight sight{point.x, point.y, point.z - margin};
     int count = 0;
     for (const std::uint32_t k : mCells[row(point.y) * kCells + column(point.x)]) {
         if (sight.mayMeet(mParts[k])) count += countIn(mParts[k], sight);

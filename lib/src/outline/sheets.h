@@ -20,7 +20,7 @@ class Sheets {
     explicit Sheets(std::span<const ViewPatch> patches);
 
     /// How many times the line of sight to a point of a curve meets patches that are nearer than it
-    /// by more than `margin`, beyond the place where the point itself is.
+    /// by more than `margin`. Where a patch folds within 1/8192 of its parameters it is not met.
     int countBefore(const CurvePoint& point, double margin) const;
 
     /// A part of a patch, as the page sees it.
@@ -41,7 +41,7 @@ class Sheets {
 
   private:
     struct Sight;
-    void addPart(Part part, int depth);
+    void cutPart(Part part, int depth, std::vector<Part>& parts) const;
     int countIn(const Part& part, const Sight& sight) const;
     int countCut(const Part& part, const Sight& sight) const;
     std::size_t column(double x) const;
