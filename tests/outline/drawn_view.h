@@ -147,6 +147,16 @@ inline double distanceFromLines(const DrawnView& drawn, std::size_t own, const C
     return nearest;
 }
 
+/// Whether a line turns back or sharply within a distance of a place.
+inline bool isNearCorner(const DrawnView& drawn, const CurvePoint& p, double reach) {
+    for (const VisiblePiece& piece : drawn.pieces) {
+        for (const CurvePoint& q : piece.curve.points) {
+            if (q.corner && std::hypot(q.x - p.x, q.y - p.y) < reach) return true;
+        }
+    }
+    return false;
+}
+
 /// Every free end of a line that is seen has to be at a cusp, or on another line that is seen; one
 /// of a hidden line on any other line.
 inline Findings checkEnds(const DrawnView& drawn) {
@@ -156,7 +166,7 @@ inline Findings checkEnds(const DrawnView& drawn) {
         if (curve.closed) continue;
         for (const CurvePoint* end : {&curve.points.front(), &curve.points.back()}) {
             ++result.samples;
-            if (end->corner) continue;
+            if (isNearCorner(drawn, *end, 0.05 * drawn.pixel)) continue;
             const double away = distanceFromLines(drawn, i, *end, hidden == 0);
             if (away < 0.05 * drawn.pixel) continue;
             ++result.wrong;

@@ -60,7 +60,7 @@ inline std::vector<BezierPatch> spiral() {
     for (int k = 0; k < kAlong; ++k) {
         const double share = double(k) / (kAlong - 1);
         const double turn = 2 * std::numbers::pi * 2.4 * share;
-        const double radius = 1.2 - 0.35 * share, tube = 0.16 + 0.34 * share * share;
+        const double radius = 1.2 - 0.35 * share, tube = 0.16 + 0.52 * share * share;
         for (int j = 0; j < kAround + kDegree; ++j) {
             const double angle = -2 * std::numbers::pi * j / kAround;
             const double r = radius + tube * std::cos(angle);

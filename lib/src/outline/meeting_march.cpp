@@ -101,12 +101,13 @@ std::array<MeetingMarch::Row, 3> MeetingMarch::jacobian(const MeetingPlace& at,
 }
 
 // What both patches' differences do not see.
-MeetingMarch::Row MeetingMarch::tangentAt(const MeetingPlace& p) const {
+MeetingMarch::Row MeetingMarch::tangentAt(const MeetingPlace& p, double* opening) const {
     std::array<double, 3> gap{};
     const auto j = jacobian(p, gap);
     Row t{determinant3(j, 1, 2, 3), -determinant3(j, 0, 2, 3), determinant3(j, 0, 1, 3),
           -determinant3(j, 0, 1, 2)};
     const double length = std::sqrt(dot4(t, t));
+    if (opening != nullptr) *opening = length;
     for (double& x : t) x = length > 0 ? x / length : 0;
     return t;
 }
@@ -182,11 +183,11 @@ std::optional<MeetingPlace> MeetingMarch::settledOnSide(const MeetingPlace& gues
 std::optional<MeetingMarch::Step> MeetingMarch::advanced(const Step& from, double length) const {
     MeetingPlace guess = from.place;
     for (std::size_t k = 0; k < 4; ++k) guess[k] += length * from.tangent[k] / mWeights[k];
-    Step next{guess, {}};
+    Step next{guess, {}, 0};
     if (!converge(next.place, from.tangent, guess)) return std::nullopt;
     const Row aside = lengths(guess, next.place);
     if (dot4(aside, aside) > 0.01 * length * length) return std::nullopt;
-    next.tangent = tangentAt(next.place);
+    next.tangent = tangentAt(next.place, &next.opening);
     const double cosine = dot4(next.tangent, from.tangent);
     if (cosine < 0) {
         for (double& x : next.tangent) x = -x;
@@ -230,10 +231,23 @@ std::optional<MeetingPlace> MeetingMarch::leftBetween(const MeetingPlace& a,
     return std::nullopt;
 }
 
+// Where branches nearly cross the angle between the patches goes down to almost nothing, in
+// proportion to the way that is left: steps are no longer than half of that.
+double MeetingMarch::safeLength(const Step& from, const Step& to, double apart) const {
+    const double closing = (from.opening - to.opening) / apart;
+    const double longest = kLongestStep * mSize;
+    return closing > 0 ? std::min(longest, 0.5 * to.opening / closing) : longest;
+}
+
 MeetingMarch::Walk MeetingMarch::walk(const MeetingPlace& start, const Row& direction) const {
     Walk result;
-    Step here{start, direction};
+    Step here{start, direction, 0};
+    tangentAt(start, &here.opening);
     double length = 0.25 * kLongestStep * mSize;
+    const double little = 1e-4 * length;
+    if (const auto trial = advanced(here, little)) {
+        length = std::min(length, safeLength(here, *trial, little));
+    }
     for (int step = 0; step < kMostSteps && length > kShortestStep * mSize; ++step) {
         const auto next = advanced(here, length);
         if (!next) {
@@ -257,9 +271,9 @@ MeetingMarch::Walk MeetingMarch::walk(const MeetingPlace& start, const Row& dire
         const MeetingPlace& p = next->place;
         constexpr double kPinch = 1e-5;
         if (mIsSelf && std::max(std::abs(p[0] - p[2]), std::abs(p[1] - p[3])) < kPinch) break;
-        if (dot4(next->tangent, here.tangent) > 0.5 * (1 + kStraight)) {
-            length = std::min(1.5 * length, kLongestStep * mSize);
-        }
+        const double safe = safeLength(here, *next, length);
+        if (dot4(next->tangent, here.tangent) > 0.5 * (1 + kStraight)) length *= 1.5;
+        length = std::min(length, safe);
         here = *next;
         result.places.push_back(here.place);
     }

@@ -43,7 +43,8 @@ class MeetingMarch {
     using Row = std::array<double, 4>;  // in lengths, as parameters times mWeights
     struct Step {
         MeetingPlace place;
-        Row tangent;
+        Row tangent;         // length 1
+        double opening = 0;  // grows with the angle between the patches
     };
     struct Walk {
         std::vector<MeetingPlace> places;  // after the start
@@ -51,12 +52,13 @@ class MeetingMarch {
     };
 
     std::array<Row, 3> jacobian(const MeetingPlace& p, std::array<double, 3>& gap) const;
-    Row tangentAt(const MeetingPlace& p) const;
+    Row tangentAt(const MeetingPlace& p, double* opening = nullptr) const;
     bool isProper(const MeetingPlace& p) const;
     bool converge(MeetingPlace& p, std::optional<Row> row, const MeetingPlace& base) const;
     std::optional<Step> advanced(const Step& from, double length) const;
     bool closes(const Step& from, double length, const MeetingPlace& start) const;
     std::optional<MeetingPlace> leftBetween(const MeetingPlace& a, const MeetingPlace& b) const;
+    double safeLength(const Step& from, const Step& to, double apart) const;
     Walk walk(const MeetingPlace& start, const Row& direction) const;
     Row lengths(const MeetingPlace& from, const MeetingPlace& to) const;
 

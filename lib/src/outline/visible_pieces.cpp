@@ -95,7 +95,7 @@ class CurveSight {
         const int more = std::min(40, static_cast<int>(span / (0.02 * mSampling.size)));
         for (int k = 1; k <= more; ++k) where.push_back(from + span * k / (more + 1));
         // Changes that were not foreseen mostly are near the ends.
-        for (const double away : {2e-3, 1.2e-2}) {
+        for (const double away : {1e-3, 4e-3, 1.2e-2}) {
             const double inward = away * mSampling.size;
             if (inward > 0.2 * span) break;
             where.push_back(from + inward);
