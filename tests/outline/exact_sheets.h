@@ -29,7 +29,10 @@ class ExactSheets {
     /// ascending; a place on a border of two patches counts once.
     std::vector<double> depthsBefore(double x, double y, double z) const {
         std::vector<Real> depths;
-        for (const Part& part : mParts) descend(part, {x, y, z}, depths);
+        for (std::size_t k = 0; k < mParts.size(); ++k) {
+            const auto& [x0, x1, y0, y1] = mBoxes[k];
+            if (x >= x0 && x <= x1 && y >= y0 && y <= y1) descend(mParts[k], {x, y, z}, depths);
+        }
         std::sort(depths.begin(), depths.end());
         std::vector<double> result;
         for (const Real depth : depths) {
@@ -89,9 +92,20 @@ class ExactSheets {
     void addParts(const Part& part, int depth) {
         if (depth == kDepthOfParts) {
             mParts.push_back(part);
+            mBoxes.push_back(boxOf(part));
             return;
         }
         for (const Part& quarter : quartersOf(part)) addParts(quarter, depth + 1);
+    }
+
+    static std::array<double, 4> boxOf(const Part& part) {
+        std::array<double, 4> box{HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
+        for (const Point& p : part.points) {
+            const auto px = static_cast<double>(p[0] / p[3]), py = static_cast<double>(p[1] / p[3]);
+            box = {std::min(box[0], px), std::max(box[1], px), std::min(box[2], py),
+                   std::max(box[3], py)};
+        }
+        return box;
     }
 
     static bool mayMeet(const Part& part, const Target& t) {
@@ -178,6 +192,7 @@ class ExactSheets {
     }
 
     std::vector<Part> mParts;
+    std::vector<std::array<double, 4>> mBoxes;  // on the page: least and largest x, y
 };
 
 }  // namespace bandvox::outline_test
