@@ -254,8 +254,9 @@ SmoothRun runOf(const std::vector<CurvePoint>& points, std::size_t first, std::s
         apart.push_back(&p);
     }
     if (apart.size() < 2) return run;
-    // Where there are many points a cubic is held by several of them.
+    // Where there are many points, and the curve turns little, a cubic is held by several of them.
     constexpr std::size_t kMany = 24;
+    constexpr double kStraightOn = 0.995;
     SmoothRun pair;
     for (std::size_t k = 0; k < apart.size(); ++k) {
         const bool isLast = k + 1 == apart.size();
@@ -263,7 +264,9 @@ SmoothRun runOf(const std::vector<CurvePoint>& points, std::size_t first, std::s
         const Place point{apart[k]->x, apart[k]->y};
         appendPoint(pair, point, isLast ? Place{-x, -y} : Place{x, y});
         if (k > 0) {
-            appendBetween(run, pair, gap, apart.size() < kMany ? 1 : 0);
+            const bool isHeld =
+                apart.size() >= kMany && dot(pair.directions[0], pair.directions[1]) > kStraightOn;
+            appendBetween(run, pair, gap, isHeld ? 0 : 1);
             pair.points.erase(pair.points.begin());
             pair.directions.erase(pair.directions.begin());
             pair.lengths.erase(pair.lengths.begin());

@@ -92,11 +92,11 @@ std::array<double, 2> FoldStretch::at(const ViewPatch& patch, double lead, doubl
         if (step == 0) rises = slope > 0;
         ((value >= 0) == rises ? high : low) = follow;
         double next = follow - value / slope;
-        if (!(next > low && next < high)) next = 0.5 * (low + high);
-        const double move = std::abs(next - follow);
-        follow = next;
         // Each step squares the error.
-        if (move < kNear * (follow1 - follow0) || high - low < 1e-15) break;
+        const bool isThere = std::abs(next - follow) < kNear * (follow1 - follow0);
+        if (!isThere && !(next > low && next < high)) next = 0.5 * (low + high);
+        follow = std::clamp(next, follow0, follow1);
+        if (isThere || high - low < 1e-15) break;
     }
     return place(follow);
 }

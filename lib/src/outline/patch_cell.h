@@ -21,7 +21,10 @@ struct PatchCell {
     Cone normals;
     bool hasCones = false;  ///< only what is near another cell needs them
 
-    const Vec& at(int i, int j) const { return points[static_cast<std::size_t>(i * (n + 1) + j)]; }
+    const Vec& at(int i, int j) const {
+        return points[static_cast<std::size_t>(i) * static_cast<std::size_t>(n + 1) +
+                      static_cast<std::size_t>(j)];
+    }
     double extent() const;
 
     /// Whether no two places of the cell are in the same place.
