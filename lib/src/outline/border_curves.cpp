@@ -58,8 +58,10 @@ class SideSampler {
         const double length = std::hypot(dx, dy);
         const double off = std::abs(dx * (middle.y - a.y) - dy * (middle.x - a.x)) /
                            std::max(length, 1e-12 * mSampling.size);
+        // Directions have the same sense all along a side: opposite ones tell of a turn back. A
+        // side that is seen as a point has no direction.
         const bool isSmooth =
-            std::abs(a.tx * b.tx + a.ty * b.ty) > 0.98 || length < 0.1 * mSampling.flatness;
+            a.tx * b.tx + a.ty * b.ty > 0.98 || (depth > 10 && length < 0.1 * mSampling.flatness);
         const bool isFlat = off < mSampling.flatness &&
                             bowBetween(a, b) < 1.3 * mSampling.flatness &&
                             length < 0.02 * mSampling.size && isSmooth;

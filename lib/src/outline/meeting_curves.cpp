@@ -46,11 +46,15 @@ class MeetingTracer {
         const bool isTurned = a.tx * b.tx + a.ty * b.ty < 0.7;
         if (depth > 12 || (length < mSampling.flatness && !isTurned)) return;
         const CurvePoint middle = pointBetween(mSeen, a, b, 0.5);
-        const double off = std::abs(dx * (middle.y - a.y) - dy * (middle.x - a.x)) /
-                           std::max(length, 1e-12 * mSampling.size);
-        const bool isFlat =
-            !isTurned && off < mSampling.flatness && bowBetween(a, b) < 1.3 * mSampling.flatness;
-        if (isFlat && length < 0.02 * mSampling.size) return;
+        const auto isOnChord = [&](const CurvePoint& p) {
+            const double off = std::abs(dx * (p.y - a.y) - dy * (p.x - a.x));
+            return off < mSampling.flatness * std::max(length, 1e-12 * mSampling.size);
+        };
+        // A wave may pass through the chord's middle.
+        const bool isFlat = !isTurned && length < 0.02 * mSampling.size && isOnChord(middle) &&
+                            bowBetween(a, b) < 1.3 * mSampling.flatness &&
+                            isOnChord(pointBetween(mSeen, a, b, 0.25));
+        if (isFlat) return;
         refine(a, middle, depth + 1, points);
         points.push_back(middle);
         refine(middle, b, depth + 1, points);

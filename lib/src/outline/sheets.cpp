@@ -43,7 +43,7 @@ void bound(Part& part) {
 // seen in the same place: the map's derivative, times the inverse of the mean, differs from 1 by
 // less than 1 everywhere.
 void judge(Part& part, const ViewPatch& patch) {
-    const auto row = static_cast<std::size_t>(part.n + 1);
+    const auto row = static_cast<std::size_t>(part.n) + 1;
     const auto last = part.points.size() - 1;
     const auto &a = part.points[0], &b = part.points[last - row + 1];
     const auto &d = part.points[row - 1], &e = part.points[last];
