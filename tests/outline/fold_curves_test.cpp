@@ -37,7 +37,8 @@ std::vector<Curve> contoursOf(const std::vector<BezierPatch>& patches, const Vie
         const auto some = foldCurves(seen.back(), static_cast<int>(seen.size()) - 1, sampling);
         folds.insert(folds.end(), some.begin(), some.end());
     }
-    const BorderCurves borders = borderCurves(patches, seen, folds, 0.99, sampling);
+    const BorderCurves borders =
+        borderCurves(patches, seen, matchSides(patches, seen), folds, 0.99, sampling);
     EXPECT_TRUE(borders.boundaries.empty());
     EXPECT_TRUE(borders.creases.empty());
     folds.insert(folds.end(), borders.contours.begin(), borders.contours.end());

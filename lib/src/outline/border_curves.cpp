@@ -3,112 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <optional>
 
 namespace bandvox {
 namespace {
-
-struct Side {
-    int patch = 0, side = 0;
-};
-
-struct SharedSide {
-    Side a;
-    std::optional<Side> b;
-    bool reversed = false;   // b's parameter is 1 - t where a's is t
-    bool isCrowded = false;  // more than two patches meet there
-};
 
 // The corner-to-corner direction in which the border of the unit square, counter-clockwise, goes
 // along a side: 1 if with its parameter.
 int turnOf(int side) {
     return side == 1 || side == 2 ? 1 : -1;
-}
-
-std::vector<std::array<double, 4>> sidePoints(const BezierPatch& patch, int side) {
-    std::vector<std::array<double, 4>> points;
-    const int last = side < 2 ? patch.degreeV : patch.degreeU;
-    for (int k = 0; k <= last; ++k) {
-        points.push_back(side < 2 ? patch.at(side == 0 ? 0 : patch.degreeU, k)
-                                  : patch.at(k, side == 2 ? 0 : patch.degreeV));
-    }
-    return points;
-}
-
-bool isSameSide(const BezierPatch& a, int sideA, const BezierPatch& b, int sideB, bool reversed,
-                double tolerance) {
-    const auto p = sidePoints(a, sideA);
-    auto q = sidePoints(b, sideB);
-    if (p.size() != q.size()) return false;
-    if (reversed) std::reverse(q.begin(), q.end());
-    for (std::size_t k = 0; k < p.size(); ++k) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            if (std::abs(p[k][c] / p[k][3] - q[k][c] / q[k][3]) > tolerance) return false;
-        }
-        if (std::abs(p[k][3] / p[0][3] - q[k][3] / q[0][3]) > 1e-6) return false;
-    }
-    return true;
-}
-
-double extentOf(std::span<const BezierPatch> patches) {
-    std::array<double, 3> low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-    for (const BezierPatch& patch : patches) {
-        for (const auto& p : patch.control) {
-            for (std::size_t c = 0; c < 3; ++c) {
-                low[c] = std::min(low[c], p[c] / p[3]);
-                high[c] = std::max(high[c], p[c] / p[3]);
-            }
-        }
-    }
-    return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
-}
-
-std::vector<SharedSide> matchSides(std::span<const BezierPatch> patches,
-                                   std::span<const ViewPatch> seen) {
-    const double tolerance = 1e-6 * extentOf(patches);
-    // Sides that match have their middles in the same cell, or in one beside it.
-    std::map<std::array<long long, 3>, std::vector<std::size_t>> cells;
-    std::vector<SharedSide> shared;
-    for (std::size_t p = 0; p < patches.size(); ++p) {
-        for (int side = 0; side < 4; ++side) {
-            if (seen[p].collapsed[static_cast<std::size_t>(side)]) continue;
-            const auto [u, v] = onSide(side, 0.5);
-            const auto middle = evaluate(patches[p], u, v).position;
-            std::array<long long, 3> cell{};
-            for (std::size_t c = 0; c < 3; ++c) {
-                cell[c] = std::llround(middle[c] / std::max(100 * tolerance, 1e-300));
-            }
-            const Side mine{static_cast<int>(p), side};
-            bool isNew = true;
-            for (int near = 0; near < 27 && isNew; ++near) {
-                const auto found = cells.find(
-                    {cell[0] + near % 3 - 1, cell[1] + near / 3 % 3 - 1, cell[2] + near / 9 - 1});
-                if (found == cells.end()) continue;
-                for (const std::size_t k : found->second) {
-                    SharedSide& other = shared[k];
-                    const BezierPatch& first = patches[static_cast<std::size_t>(other.a.patch)];
-                    for (const bool reversed : {false, true}) {
-                        if (!isNew || !isSameSide(first, other.a.side, patches[p], side, reversed,
-                                                  tolerance)) {
-                            continue;
-                        }
-                        isNew = false;
-                        if (other.b) {
-                            other.isCrowded = true;
-                        } else {
-                            other.b = mine;
-                            other.reversed = reversed;
-                        }
-                    }
-                }
-            }
-            if (!isNew) continue;
-            cells[cell].push_back(shared.size());
-            shared.push_back({mine, std::nullopt, false, false});
-        }
-    }
-    return shared;
 }
 
 /// Draws sides, whole or in part.
@@ -117,7 +19,7 @@ class SideSampler {
     SideSampler(std::span<const ViewPatch> seen, const CurveSampling& sampling)
         : mSeen(seen), mSampling(sampling) {}
 
-    Curve sample(const Side& side, double t0, double t1, OutlineKind kind) const {
+    Curve sample(const PatchSide& side, double t0, double t1, OutlineKind kind) const {
         Curve curve{.kind = kind, .object = mSeen[static_cast<std::size_t>(side.patch)].object};
         const CurvePoint first = at(side, t0);
         curve.points.push_back(first);
@@ -125,7 +27,7 @@ class SideSampler {
         return curve;
     }
 
-    CurvePoint at(const Side& side, double t) const {
+    CurvePoint at(const PatchSide& side, double t) const {
         const auto [u, v] = onSide(side.side, t);
         const ViewPoint p = mSeen[static_cast<std::size_t>(side.patch)].at(u, v);
         double tx = side.side < 2 ? p.xv : p.xu, ty = side.side < 2 ? p.yv : p.yu;
@@ -148,7 +50,7 @@ class SideSampler {
     }
 
   private:
-    void refine(const Side& side, std::array<double, 2> range, const CurvePoint& a,
+    void refine(const PatchSide& side, std::array<double, 2> range, const CurvePoint& a,
                 const CurvePoint& b, int depth, std::vector<CurvePoint>& points) const {
         const double half = 0.5 * (range[0] + range[1]);
         const CurvePoint middle = at(side, half);
@@ -156,9 +58,13 @@ class SideSampler {
         const double length = std::hypot(dx, dy);
         const double off = std::abs(dx * (middle.y - a.y) - dy * (middle.x - a.x)) /
                            std::max(length, 1e-12 * mSampling.size);
+        // Directions have the same sense all along a side: opposite ones tell of a turn back. A
+        // side that is seen as a point has no direction.
         const bool isSmooth =
-            std::abs(a.tx * b.tx + a.ty * b.ty) > 0.98 || length < 0.1 * mSampling.flatness;
-        const bool isFlat = off < mSampling.flatness && length < 0.02 * mSampling.size && isSmooth;
+            a.tx * b.tx + a.ty * b.ty > 0.98 || (depth > 10 && length < 0.1 * mSampling.flatness);
+        const bool isFlat = off < mSampling.flatness &&
+                            bowBetween(a, b) < 1.3 * mSampling.flatness &&
+                            length < 0.02 * mSampling.size && isSmooth;
         if (depth > 24 || (isFlat && depth > 2)) {
             points.push_back(b);
             return;
@@ -207,9 +113,9 @@ class BorderWork {
         }
     }
 
-    BorderCurves work(double crease) {
+    BorderCurves work(std::span<const SharedSide> sides, double crease) {
         BorderCurves curves;
-        for (const SharedSide& side : matchSides(mPatches, mSeen)) {
+        for (const SharedSide& side : sides) {
             if (!side.b) {
                 curves.boundaries.push_back(mSampler.sample(side.a, 0, 1, OutlineKind::Boundary));
                 continue;
@@ -224,7 +130,7 @@ class BorderWork {
     }
 
   private:
-    const ViewPatch& seenAt(const Side& side) const {
+    const ViewPatch& seenAt(const PatchSide& side) const {
         return mSeen[static_cast<std::size_t>(side.patch)];
     }
 
@@ -268,7 +174,7 @@ class BorderWork {
         }
     }
 
-    const std::vector<double>& endsAt(const Side& side) const {
+    const std::vector<double>& endsAt(const PatchSide& side) const {
         return mEnds[static_cast<std::size_t>(side.patch)][static_cast<std::size_t>(side.side)];
     }
 
@@ -281,9 +187,9 @@ class BorderWork {
 }  // namespace
 
 BorderCurves borderCurves(std::span<const BezierPatch> patches, std::span<const ViewPatch> seen,
-                          std::span<const Curve> folds, double crease,
-                          const CurveSampling& sampling) {
-    return BorderWork(patches, seen, folds, sampling).work(crease);
+                          std::span<const SharedSide> sides, std::span<const Curve> folds,
+                          double crease, const CurveSampling& sampling) {
+    return BorderWork(patches, seen, folds, sampling).work(sides, crease);
 }
 
 }  // namespace bandvox

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "outline/curve.h"
+#include "outline/shared_sides.h"
 #include "outline/view_patch.h"
 
 #include <bandvox/source/bezier_patch.h>
@@ -22,7 +23,7 @@ struct BorderCurves {
 /// `crease`: cosine of the least angle between normals that makes a crease. `folds`: those of all
 /// patches.
 BorderCurves borderCurves(std::span<const BezierPatch> patches, std::span<const ViewPatch> seen,
-                          std::span<const Curve> folds, double crease,
-                          const CurveSampling& sampling);
+                          std::span<const SharedSide> sides, std::span<const Curve> folds,
+                          double crease, const CurveSampling& sampling);
 
 }  // namespace bandvox

@@ -107,12 +107,55 @@ class CrossingSearch {
         const double alongA = ((r.x - p.x) * by - (r.y - p.y) * bx) / area;
         const double alongB = ((r.x - p.x) * ay - (r.y - p.y) * ax) / area;
         if (alongA < 0 || alongA > 1 || alongB < 0 || alongB > 1) return;
-        const double depthA = p.z + alongA * (q.z - p.z), depthB = r.z + alongB * (s.z - r.z);
-        // Depths between points of a curve are not exact.
-        const double near = 1e-3 * mSize;
-        if (occludes(second) && depthB < depthA + near)
-            mPlaces[a.curve].push_back(a.index + alongA);
-        if (occludes(first) && depthA < depthB + near) mPlaces[b.curve].push_back(b.index + alongB);
+        Crossing at{alongA, alongB, {}, {}};
+        if (!settle({&p, &q}, {&r, &s}, at)) return;
+        // Both are in the same place where a surface passes through a fold.
+        const double near = 1e-5 * mSize;
+        if (occludes(second) && at.onB.z < at.onA.z + near) {
+            mPlaces[a.curve].push_back(a.index + at.alongA);
+        }
+        if (occludes(first) && at.onA.z < at.onB.z + near) {
+            mPlaces[b.curve].push_back(b.index + at.alongB);
+        }
+    }
+
+    // A segment's ends.
+    struct Ends {
+        const CurvePoint *from, *to;
+    };
+    struct Crossing {
+        double alongA, alongB;  // shares of both segments
+        CurvePoint onA, onB;
+    };
+
+    // From where chords cross to where the curves do; false if that is beyond the segments.
+    bool settle(const Ends& a, const Ends& b, Crossing& at) const {
+        const double ax = a.to->x - a.from->x, ay = a.to->y - a.from->y;
+        const double bx = b.to->x - b.from->x, by = b.to->y - b.from->y;
+        const double area = ax * by - ay * bx;
+        // Parameters go along chords nearly evenly: each round leaves a small part of the error.
+        for (int round = 0; round < 12; ++round) {
+            at.onA = pointBetween(mPatches, *a.from, *a.to, at.alongA);
+            at.onB = pointBetween(mPatches, *b.from, *b.to, at.alongB);
+            const double gx = at.onB.x - at.onA.x, gy = at.onB.y - at.onA.y;
+            if (std::hypot(gx, gy) < 1e-3 * mFlatness) break;
+            at.alongA = std::clamp(at.alongA + (gx * by - gy * bx) / area, 0.0, 1.0);
+            at.alongB = std::clamp(at.alongB + (gx * ay - gy * ax) / area, 0.0, 1.0);
+        }
+        return std::hypot(at.onB.x - at.onA.x, at.onB.y - at.onA.y) < 2 * mFlatness;
+    }
+
+    // The share of a segment where the curve is nearest to a place, from that of the chord.
+    double shareNear(const Ends& ends, const CurvePoint& p, double share) const {
+        const double dx = ends.to->x - ends.from->x, dy = ends.to->y - ends.from->y;
+        const double square = dx * dx + dy * dy;
+        for (int round = 0; round < 12; ++round) {
+            const CurvePoint q = pointBetween(mPatches, *ends.from, *ends.to, share);
+            const double behind = ((p.x - q.x) * dx + (p.y - q.y) * dy) / square;
+            share = std::clamp(share + behind, 0.0, 1.0);
+            if (behind * behind * square < 1e-6 * mFlatness * mFlatness) break;
+        }
+        return share;
     }
 
     // Where an intersection goes over a fold of one of its surfaces, by halving.
@@ -161,7 +204,7 @@ class CrossingSearch {
                 const double away = std::hypot(a.x + share * dx - p.x, a.y + share * dy - p.y);
                 const double below = a.z + share * (b.z - a.z) - p.z;
                 if (away > reach || std::abs(below) > 0.02 * mSize) continue;
-                mPlaces[segment.curve].push_back(segment.index + share);
+                mPlaces[segment.curve].push_back(segment.index + shareNear({&a, &b}, p, share));
             }
         }
     }

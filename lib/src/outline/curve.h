@@ -2,7 +2,9 @@
 
 #include <bandvox/outline/outline.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace bandvox {
@@ -34,6 +36,13 @@ struct Curve {
     int object = 0;
     std::vector<CurvePoint> points;
 };
+
+/// How far the curve between two points leaves their chord, as an arc would with the larger of the
+/// angles between the chord and the directions there: tells of an inflection between them, too.
+inline double bowBetween(const CurvePoint& a, const CurvePoint& b) {
+    const double dx = b.x - a.x, dy = b.y - a.y;
+    return 0.25 * std::max(std::abs(dx * a.ty - dy * a.tx), std::abs(dx * b.ty - dy * b.tx));
+}
 
 /// How densely curves are sampled.
 struct CurveSampling {

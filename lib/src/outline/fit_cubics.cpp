@@ -25,7 +25,7 @@ double dot(const Place& a, const Place& b) {
     return a[0] * b[0] + a[1] * b[1];
 }
 double lengthOf(const Place& a) {
-    return std::hypot(a[0], a[1]);
+    return std::sqrt(a[0] * a[0] + a[1] * a[1]);
 }
 
 struct Cubic {
@@ -56,13 +56,19 @@ struct SmoothRun {
     std::vector<double> lengths;    // up to each point
 };
 
+/// What is known of a cubic: ends, directions there, length.
+struct CubicFrame {
+    Place a, b, da, db;
+    double length;
+};
+
 // A cubic with given ends and end directions, whose handles have the lengths that fit best. With a
 // cubic that is near already, distances along it count little, since parameters will give way
 // there: that takes a few rounds where plain least squares take hundreds.
-Cubic leastSquares(const std::array<Place, 4>& frame, const std::vector<Place>& points,
+Cubic leastSquares(const CubicFrame& frame, const std::vector<Place>& points,
                    const std::vector<double>& parameters, const Cubic* near) {
     constexpr double kWeightAlong = 0.02;
-    const auto& [a, b, da, db] = frame;
+    const auto& [a, b, da, db, length] = frame;
     double aa = 0, ab = 0, bb = 0, ra = 0, rb = 0;
     for (std::size_t k = 0; k < points.size(); ++k) {
         const double t = parameters[k], s = 1 - t;
@@ -71,8 +77,7 @@ Cubic leastSquares(const std::array<Place, 4>& frame, const std::vector<Place>& 
         Place va = b1 * da, vb = -b2 * db;
         if (near != nullptr) {
             const Place slope = near->slope(t);
-            const double length = std::max(lengthOf(slope), 1e-300);
-            const Place along = (1 / length) * slope;
+            const Place along = (1 / std::max(lengthOf(slope), 1e-300)) * slope;
             for (Place* v : {&rest, &va, &vb}) {
                 *v = *v - (1 - kWeightAlong) * dot(*v, along) * along;
             }
@@ -86,8 +91,9 @@ Cubic leastSquares(const std::array<Place, 4>& frame, const std::vector<Place>& 
     const double determinant = aa * bb - ab * ab;
     const double chord = lengthOf(b - a);
     double alpha = (ra * bb - rb * ab) / determinant, beta = (rb * aa - ra * ab) / determinant;
-    const bool isGood =
-        alpha > 1e-3 * chord && beta > 1e-3 * chord && alpha < 4 * chord && beta < 4 * chord;
+    // Longer handles would take the curve back and forth between its points.
+    const double most = 0.75 * std::max(length, chord);
+    const bool isGood = alpha > 1e-3 * chord && beta > 1e-3 * chord && alpha < most && beta < most;
     if (!isGood) alpha = beta = chord / 3;
     return {{a, a + alpha * da, b - beta * db, b}};
 }
@@ -114,8 +120,8 @@ FittedCubic fitOne(const SmoothRun& run, std::size_t first, std::size_t last, do
         points.push_back(run.points[i]);
         parameters.push_back((run.lengths[i] - run.lengths[first]) / whole);
     }
-    const std::array<Place, 4> frame{run.points[first], run.points[last], run.directions[first],
-                                     run.directions[last]};
+    const CubicFrame frame{run.points[first], run.points[last], run.directions[first],
+                           run.directions[last], whole};
     FittedCubic best{.cubic = leastSquares(frame, points, parameters, nullptr),
                      .error = std::numeric_limits<double>::infinity()};
     double before = best.error;
@@ -162,7 +168,7 @@ std::vector<Cubic> fitGreedily(const SmoothRun& run, double tolerance, std::size
             if (trial <= good || trial >= bad) trial = (good + bad) / 2;
             const FittedCubic fitted = fitOne(run, first, trial, tolerance);
             const bool isGood = fitted.error <= tolerance &&
-                                isNearAll(run, first, trial, fitted.cubic, 1.05 * tolerance);
+                                isNearAll(run, first, trial, fitted.cubic, 1.02 * tolerance);
             if (isGood) {
                 good = trial;
                 best = fitted;
@@ -186,7 +192,7 @@ std::vector<Cubic> fitRun(const SmoothRun& run, double tolerance) {
     std::vector<Cubic> best = fitGreedily(run, tolerance, run.points.size());
     if (best.size() == 1) return best;
     double low = 0.1 * tolerance, high = tolerance;
-    for (int step = 0; step < 5; ++step) {
+    for (int step = 0; step < 3; ++step) {
         const double middle = std::sqrt(low * high);
         std::vector<Cubic> tighter = fitGreedily(run, middle, best.size());
         if (tighter.empty()) {
@@ -209,8 +215,25 @@ void appendPoint(SmoothRun& run, const Place& point, const Place& direction) {
     run.directions.push_back(direction);
 }
 
+// A cubic is not to leave the curve between its points. Those and the directions tell where it is
+// there, far more exactly than the chord. `apart`: of what is appended, about.
+void appendBetween(SmoothRun& run, const SmoothRun& ends, double apart, int fewest) {
+    constexpr int kMost = 8;
+    const Place a = ends.points[0], b = ends.points[1];
+    const double length = lengthOf(b - a), handle = length / 3;
+    const Cubic cubic{{a, a + handle * ends.directions[0], b - handle * ends.directions[1], b}};
+    const int count = std::clamp(static_cast<int>(length / apart), fewest, kMost);
+    for (int k = 1; k <= count; ++k) {
+        const double t = double(k) / (count + 1);
+        const Place slope = cubic.slope(t);
+        const double speed = lengthOf(slope);
+        if (speed > 0) appendPoint(run, cubic.at(t), (1 / speed) * slope);
+    }
+}
+
 // Points that are not in the same place, each with its direction.
-SmoothRun runOf(const std::vector<CurvePoint>& points, std::size_t first, std::size_t last) {
+SmoothRun runOf(const std::vector<CurvePoint>& points, std::size_t first, std::size_t last,
+                double gap) {
     SmoothRun run;
     std::vector<const CurvePoint*> apart;
     double extent = 0;
@@ -231,10 +254,24 @@ SmoothRun runOf(const std::vector<CurvePoint>& points, std::size_t first, std::s
         apart.push_back(&p);
     }
     if (apart.size() < 2) return run;
+    // Where there are many points, and the curve turns little, a cubic is held by several of them.
+    constexpr std::size_t kMany = 24;
+    constexpr double kStraightOn = 0.995;
+    SmoothRun pair;
     for (std::size_t k = 0; k < apart.size(); ++k) {
         const bool isLast = k + 1 == apart.size();
         const auto [x, y] = directionTowards(*apart[k], *apart[isLast ? k - 1 : k + 1]);
-        appendPoint(run, {apart[k]->x, apart[k]->y}, isLast ? Place{-x, -y} : Place{x, y});
+        const Place point{apart[k]->x, apart[k]->y};
+        appendPoint(pair, point, isLast ? Place{-x, -y} : Place{x, y});
+        if (k > 0) {
+            const bool isHeld =
+                apart.size() >= kMany && dot(pair.directions[0], pair.directions[1]) > kStraightOn;
+            appendBetween(run, pair, gap, isHeld ? 0 : 1);
+            pair.points.erase(pair.points.begin());
+            pair.directions.erase(pair.directions.begin());
+            pair.lengths.erase(pair.lengths.begin());
+        }
+        appendPoint(run, point, pair.directions.back());
     }
     return run;
 }
@@ -258,19 +295,22 @@ std::vector<CurvePoint> fromCorner(const Curve& curve) {
 }  // namespace
 
 std::vector<std::array<double, 2>> fitCubics(const Curve& curve, double tolerance) {
+    // What is not seen between points is little.
+    constexpr double kShare = 0.85, kGap = 100;
+    const double least = kShare * tolerance;
     const std::vector<CurvePoint> points = fromCorner(curve);
     std::vector<std::array<double, 2>> path;
     std::size_t first = 0;
     for (std::size_t i = 1; i < points.size(); ++i) {
         if (!points[i].corner && i + 1 < points.size()) continue;
-        SmoothRun run = runOf(points, first, i);
+        SmoothRun run = runOf(points, first, i, kGap * tolerance);
         first = i;
         if (run.points.size() < 2) continue;
         const bool isLoop =
             curve.closed && path.empty() && i + 1 == points.size() && !points.front().corner;
         // The end of a smooth loop is its start.
         if (isLoop) run.directions.back() = run.directions.front();
-        for (const Cubic& cubic : fitRun(run, tolerance)) {
+        for (const Cubic& cubic : fitRun(run, least)) {
             if (path.empty()) path.push_back(cubic.p[0]);
             path.insert(path.end(), cubic.p.begin() + 1, cubic.p.end());
         }

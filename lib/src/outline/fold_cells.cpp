@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kDeepest = 18;
 constexpr std::size_t kMostCells = 20000;
+constexpr double kNear = 1e-10;  // of a rectangle's side, from which one step reaches the curve
 
 struct FoldCell {
     double u0, v0, size;
@@ -72,7 +73,7 @@ bool appendStretches(const FoldCell& cell, bool leadIsU, std::vector<FoldStretch
 
 }  // namespace
 
-std::array<double, 2> FoldStretch::at(const ViewPatch& patch, double lead) const {
+std::array<double, 2> FoldStretch::at(const ViewPatch& patch, double lead, double guess) const {
     const auto place = [&](double follow) {
         return leadIsU ? std::array{lead, follow} : std::array{follow, lead};
     };
@@ -84,18 +85,18 @@ std::array<double, 2> FoldStretch::at(const ViewPatch& patch, double lead) const
         return std::pair{g.value, leadIsU ? g.dv : g.du};
     };
     double low = follow0, high = follow1;
-    const double share = (lead - lead0) / (lead1 - lead0);
-    double follow = start + share * (end - start);
+    double follow = std::clamp(guess, low, high);
     bool rises = true;
     for (int step = 0; step < 60; ++step) {
         const auto [value, slope] = valueAt(follow);
         if (step == 0) rises = slope > 0;
         ((value >= 0) == rises ? high : low) = follow;
         double next = follow - value / slope;
-        if (!(next > low && next < high)) next = 0.5 * (low + high);
-        const double move = std::abs(next - follow);
-        follow = next;
-        if (move < 1e-15 || high - low < 1e-15) break;
+        // Each step squares the error.
+        const bool isThere = std::abs(next - follow) < kNear * (follow1 - follow0);
+        if (!isThere && !(next > low && next < high)) next = 0.5 * (low + high);
+        follow = std::clamp(next, follow0, follow1);
+        if (isThere || high - low < 1e-15) break;
     }
     return place(follow);
 }

@@ -14,8 +14,9 @@ struct FoldStretch {
     double follow0 = 0, follow1 = 0;  ///< between which the follower is
     double start = 0, end = 0;        ///< the follower at lead0 and lead1
 
-    /// Parameters (u, v) of the curve where the lead has a value.
-    std::array<double, 2> at(const ViewPatch& patch, double lead) const;
+    /// Parameters (u, v) of the curve where the lead has a value; `guess`: about what the follower
+    /// is there.
+    std::array<double, 2> at(const ViewPatch& patch, double lead, double guess) const;
 };
 
 /// All stretches of F = 0 on a patch. Nothing is missed: rectangles are divided until the Bernstein

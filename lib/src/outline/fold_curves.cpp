@@ -11,7 +11,7 @@ namespace {
 
 // A point of a stretch: where it is, and how fast its image goes along the fold's direction.
 struct LedPoint {
-    double lead = 0;
+    double lead = 0, follow = 0;
     double speed = 0;  // signed by the direction in `point`
     CurvePoint point;
 };
@@ -24,15 +24,15 @@ class StretchSampler {
         : mPatch(patch), mIndex(index), mStretch(stretch), mSampling(sampling) {}
 
     std::vector<CurvePoint> sample() {
-        LedPoint first = at(mStretch.lead0);
+        const LedPoint first = at(mStretch.lead0, mStretch.start);
         mPoints.push_back(first.point);
-        refine(first, at(mStretch.lead1), 0);
+        refine(first, at(mStretch.lead1, mStretch.end), 0);
         return std::move(mPoints);
     }
 
   private:
-    LedPoint at(double lead) const {
-        const auto [u, v] = mStretch.at(mPatch, lead);
+    LedPoint at(double lead, double guess) const {
+        const auto [u, v] = mStretch.at(mPatch, lead, guess);
         const ViewPoint p = mPatch.at(u, v);
         const Gradient2 f = evaluate(mPatch.f, u, v);
         const auto [tx, ty] = foldDirection(p);
@@ -41,8 +41,13 @@ class StretchSampler {
         const double speed = (p.xu * du + p.xv * dv) * tx + (p.yu * du + p.yv * dv) * ty;
         return {
             lead,
+            mStretch.leadIsU ? v : u,
             speed,
             {.x = p.x, .y = p.y, .z = p.z, .tx = tx, .ty = ty, .patch = mIndex, .u = u, .v = v}};
+    }
+
+    LedPoint between(const LedPoint& a, const LedPoint& b, double share) const {
+        return at(a.lead + share * (b.lead - a.lead), a.follow + share * (b.follow - a.follow));
     }
 
     static double turn(const LedPoint& a, const LedPoint& b) {
@@ -60,15 +65,15 @@ class StretchSampler {
     double distanceFromChord(const LedPoint& a, const LedPoint& b, const LedPoint& p) const {
         const double dx = b.point.x - a.point.x, dy = b.point.y - a.point.y;
         const double px = p.point.x - a.point.x, py = p.point.y - a.point.y;
-        const double length = std::hypot(dx, dy);
-        if (length < 1e-12 * mSampling.size) return std::hypot(px, py);
+        const double length = std::sqrt(dx * dx + dy * dy);
+        if (length < 1e-12 * mSampling.size) return std::sqrt(px * px + py * py);
         return std::abs(dx * py - dy * px) / length;
     }
 
     // Where the image stops and turns back, between a and b.
     LedPoint cuspBetween(LedPoint a, LedPoint b) const {
         for (int step = 0; step < 60 && b.lead - a.lead > 1e-15; ++step) {
-            LedPoint middle = at(0.5 * (a.lead + b.lead));
+            LedPoint middle = between(a, b, 0.5);
             alignWith(a, middle);
             (middle.speed * a.speed > 0 ? a : b) = middle;
         }
@@ -80,12 +85,12 @@ class StretchSampler {
 
     // Appends the points after a, up to b.
     void refine(const LedPoint& a, LedPoint b, int depth) {
-        constexpr double kSmallTurn = 0.98;
+        constexpr double kSmallTurn = 0.98, kBow = 1.3;
         constexpr int kMostHalvings = 40;
         alignWith(a, b);
         const double width = b.lead - a.lead;
         const bool isNarrow = depth > kMostHalvings || width < 1e-11;
-        LedPoint middle = at(0.5 * (a.lead + b.lead));
+        LedPoint middle = between(a, b, 0.5);
         alignWith(a, middle);
         const bool isSmooth = turn(a, b) > kSmallTurn && turn(a, middle) > kSmallTurn;
         if (!isNarrow && !isSmooth) return divide(a, middle, b, depth);
@@ -105,8 +110,13 @@ class StretchSampler {
             }
         }
         const double length = std::hypot(b.point.x - a.point.x, b.point.y - a.point.y);
+        const auto isOnChord = [&](double share) {
+            return distanceFromChord(a, b, between(a, b, share)) < mSampling.flatness;
+        };
+        // A wave may pass through the chord's middle.
         const bool isFlat = distanceFromChord(a, b, middle) < mSampling.flatness &&
-                            length < 0.02 * mSampling.size && depth > 1;
+                            bowBetween(a.point, b.point) < kBow * mSampling.flatness &&
+                            length < 0.02 * mSampling.size && depth > 1 && isOnChord(0.25);
         if (!isNarrow && !isFlat) return divide(a, middle, b, depth);
         mPoints.push_back(b.point);
     }

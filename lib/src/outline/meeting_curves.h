@@ -1,6 +1,7 @@
 #pragma once
 
 #include "outline/curve.h"
+#include "outline/shared_sides.h"
 #include "outline/view_patch.h"
 
 #include <bandvox/core/progress.h>
@@ -11,8 +12,9 @@
 namespace bandvox {
 
 /// The curves in which patches pass through each other, or through themselves, beyond the sides
-/// that they share.
-std::vector<Curve> meetingCurves(std::span<const ViewPatch> seen, const CurveSampling& sampling,
-                                 Progress& progress);
+/// that they share. Each goes on to a border of a patch, to where it closes, or to where surfaces
+/// touch. One that lies as a whole in two regions smaller than 1/5000 of the page may be missed.
+std::vector<Curve> meetingCurves(std::span<const ViewPatch> seen, std::span<const SharedSide> sides,
+                                 const CurveSampling& sampling, Progress& progress);
 
 }  // namespace bandvox

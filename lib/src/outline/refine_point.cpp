@@ -34,7 +34,8 @@ void ontoFold(const ViewPatch& patch, CurvePoint& point) {
         const double du = -f.value * f.du / square, dv = -f.value * f.dv / square;
         point.u = std::clamp(point.u + du, 0.0, 1.0);
         point.v = std::clamp(point.v + dv, 0.0, 1.0);
-        if (std::max(std::abs(du), std::abs(dv)) < 1e-15) return;
+        // Each step squares the error.
+        if (std::max(std::abs(du), std::abs(dv)) < 1e-9) return;
     }
 }
 
@@ -89,12 +90,20 @@ bool meet(std::span<const ViewPatch> patches, CurvePoint& point) {
             double move = 0;
             for (std::size_t r = 0; r < 3; ++r) move += columns[k][r] * weights[r];
             largest = std::max(largest, std::abs(move));
-            *parameters[k] = std::clamp(*parameters[k] + std::clamp(move, -0.1, 0.1), 0.0, 1.0);
+            *parameters[k] += std::clamp(move, -0.1, 0.1);
         }
         if (largest < 1e-13) break;
         if (step == 19 && largest > 1e-9) return false;
     }
-    const ViewPoint p = first.at(point.u, point.v), q = second.at(point.s, point.t);
+    for (double* parameter : parameters) *parameter = std::clamp(*parameter, 0.0, 1.0);
+    placeMeeting(patches, point);
+    return true;
+}
+
+void placeMeeting(std::span<const ViewPatch> patches, CurvePoint& point) {
+    const ViewPatch& first = patches[static_cast<std::size_t>(point.patch)];
+    const ViewPoint p = first.at(point.u, point.v),
+                    q = patches[static_cast<std::size_t>(point.other)].at(point.s, point.t);
     // Along the curve both surfaces go: across both normals.
     const auto normal = [](const ViewPoint& a) {
         return std::array{a.yu * a.zv - a.zu * a.yv, a.zu * a.xv - a.xu * a.zv,
@@ -103,7 +112,6 @@ bool meet(std::span<const ViewPatch> patches, CurvePoint& point) {
     const auto n = normal(p), m = normal(q);
     point.rule = CurveRule::Meeting;
     place(first, point, n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2]);
-    return true;
 }
 
 CurvePoint pointBetween(std::span<const ViewPatch> patches, const CurvePoint& a,

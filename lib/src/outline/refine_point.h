@@ -16,4 +16,7 @@ CurvePoint pointBetween(std::span<const ViewPatch> patches, const CurvePoint& a,
 /// False if that fails.
 bool meet(std::span<const ViewPatch> patches, CurvePoint& point);
 
+/// Sets where the view sees a point of an intersection, and its direction, by its parameters.
+void placeMeeting(std::span<const ViewPatch> patches, CurvePoint& point);
+
 }  // namespace bandvox

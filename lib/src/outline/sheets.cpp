@@ -1,15 +1,21 @@
 #include "outline/sheets.h"
 
+#include <bandvox/core/parallel.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <limits>
 
 namespace bandvox {
 namespace {
 
-constexpr int kCells = 64;            // along a side of the page
-constexpr int kDepthOfParts = 4;      // to which patches are cut in advance
-constexpr double kSmallest = 1e-7;    // part of a patch that is cut no more
+constexpr int kCells = 64;        // along a side of the page
+constexpr int kDepthOfParts = 4;  // to which patches are cut in advance
+// Of a patch, that is cut no more: it moves a fold by the square of that.
+constexpr double kSmallest = 1.0 / 8192;
 constexpr double kLargestBend = 0.4;  // of derivatives, relative to the mean
 
 using Part = Sheets::Part;
@@ -19,129 +25,141 @@ void bound(Part& part) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     part.x0 = part.y0 = part.z0 = kInfinity;
     part.x1 = part.y1 = -kInfinity;
-    const bool isRational = part.w.c.size() > 1;
-    for (std::size_t k = 0; k < part.x.c.size(); ++k) {
-        const double scale = isRational ? 1 / part.w.c[k] : 1;
-        const double x = part.x.c[k] * scale, y = part.y.c[k] * scale, z = part.z.c[k] * scale;
-        part.x0 = std::min(part.x0, x);
-        part.x1 = std::max(part.x1, x);
-        part.y0 = std::min(part.y0, y);
-        part.y1 = std::max(part.y1, y);
-        part.z0 = std::min(part.z0, z);
+    for (std::size_t k = 0; k < part.homogeneous.size(); ++k) {
+        const auto& h = part.homogeneous[k];
+        const double scale = 1 / h[3];
+        part.points[k] = {h[0] * scale, h[1] * scale, h[2] * scale};
+    }
+    for (const auto& p : part.points) {
+        part.x0 = std::min(part.x0, p[0]);
+        part.x1 = std::max(part.x1, p[0]);
+        part.y0 = std::min(part.y0, p[1]);
+        part.y1 = std::max(part.y1, p[1]);
+        part.z0 = std::min(part.z0, p[2]);
     }
 }
 
-// Whether the derivatives differ so little from their mean that no two places of the part are seen
-// in the same place: the map's derivative, times the inverse of the mean, differs from 1 by less
-// than 1 everywhere.
-bool isOneToOne(const Part& part) {
-    const bool isRational = part.w.c.size() > 1;
-    const int m = part.x.m, n = part.x.n;
-    const auto place = [&](int i, int j) {
-        const double scale = isRational ? 1 / part.w.at(i, j) : 1;
-        return std::array{part.x.at(i, j) * scale, part.y.at(i, j) * scale};
-    };
+// Finds out whether derivatives differ so little from their mean that no two places of the part are
+// seen in the same place: the map's derivative, times the inverse of the mean, differs from 1 by
+// less than 1 everywhere.
+void judge(Part& part, const ViewPatch& patch) {
+    const auto row = static_cast<std::size_t>(part.n) + 1;
+    const auto last = part.points.size() - 1;
+    const auto &a = part.points[0], &b = part.points[last - row + 1];
+    const auto &d = part.points[row - 1], &e = part.points[last];
     std::array<double, 2> meanU{}, meanV{};
     for (std::size_t c = 0; c < 2; ++c) {
-        const double a = place(0, 0)[c], b = place(m, 0)[c], d = place(0, n)[c];
-        const double e = place(m, n)[c];
-        meanU[c] = 0.5 * (b - a + e - d);
-        meanV[c] = 0.5 * (d - a + e - b);
+        meanU[c] = 0.5 * (b[c] - a[c] + e[c] - d[c]);
+        meanV[c] = 0.5 * (d[c] - a[c] + e[c] - b[c]);
     }
+    part.oneToOne = false;
     const double area = meanU[0] * meanV[1] - meanU[1] * meanV[0];
-    if (area == 0) return false;
-    const auto isNear = [&](double dx, double dy, bool alongU) {
-        const double u = (dx * meanV[1] - dy * meanV[0]) / area - (alongU ? 1 : 0);
-        const double v = (dy * meanU[0] - dx * meanU[1]) / area - (alongU ? 0 : 1);
-        return std::max(std::abs(u), std::abs(v)) < kLargestBend;
+    if (area == 0) return;
+    const std::array<double, 4> inverse{meanV[1] / area, -meanV[0] / area, -meanU[1] / area,
+                                        meanU[0] / area};
+    double bend = 0;
+    const auto compare = [&](const auto& p, const auto& q, int degree, bool alongU) {
+        const double dx = degree * (q[0] - p[0]), dy = degree * (q[1] - p[1]);
+        const double u = dx * inverse[0] + dy * inverse[1] - (alongU ? 1 : 0);
+        const double v = dx * inverse[2] + dy * inverse[3] - (alongU ? 0 : 1);
+        bend = std::max({bend, std::abs(u), std::abs(v)});
     };
-    for (int i = 0; i <= m; ++i) {
-        for (int j = 0; j <= n; ++j) {
-            const auto p = place(i, j);
-            if (i < m) {
-                const auto q = place(i + 1, j);
-                if (!isNear(m * (q[0] - p[0]), m * (q[1] - p[1]), true)) return false;
-            }
-            if (j < n) {
-                const auto q = place(i, j + 1);
-                if (!isNear(n * (q[0] - p[0]), n * (q[1] - p[1]), false)) return false;
-            }
+    std::size_t k = 0;
+    for (int i = 0; i <= part.m; ++i) {
+        for (int j = 0; j <= part.n; ++j, ++k) {
+            if (i < part.m) compare(part.points[k], part.points[k + row], part.m, true);
+            if (j < part.n) compare(part.points[k], part.points[k + 1], part.n, false);
         }
+        if (!(bend < kLargestBend)) return;
     }
-    return true;
+    part.oneToOne = true;
+    part.bend = bend;
+    for (std::size_t c = 0; c < 4; ++c) part.inverse[c] = part.size * inverse[c];
+    const ViewPoint middle = patch.at(part.u0 + 0.5 * part.size, part.v0 + 0.5 * part.size);
+    part.middleX = middle.x;
+    part.middleY = middle.y;
 }
 
-// The halves of a part, along u or v, with their bounds.
-std::array<Part, 2> halves(const Part& part, bool alongU) {
-    const auto split = [alongU](const Bernstein2& p) { return alongU ? splitU(p) : splitV(p); };
-    auto [x0, x1] = split(part.x);
-    auto [y0, y1] = split(part.y);
-    auto [z0, z1] = split(part.z);
-    std::pair<Bernstein2, Bernstein2> w(part.w, part.w);
-    if (part.w.c.size() > 1) w = split(part.w);
-    std::array<Part, 2> result;
-    result[0] = {.patch = part.patch,
-                 .u0 = part.u0,
-                 .v0 = part.v0,
-                 .size = part.size,
-                 .x = std::move(x0),
-                 .y = std::move(y0),
-                 .z = std::move(z0),
-                 .w = std::move(w.first)};
-    result[1] = {.patch = part.patch,
-                 .u0 = part.u0,
-                 .v0 = part.v0,
-                 .size = part.size,
-                 .x = std::move(x1),
-                 .y = std::move(y1),
-                 .z = std::move(z1),
-                 .w = std::move(w.second)};
-    (alongU ? result[1].u0 : result[1].v0) += 0.5 * part.size;
-    for (Part& half : result) bound(half);
-    return result;
+// Makes a part its half of low u, or v; returns the other one.
+Part halvePart(Part& part, bool alongU) {
+    Part high{.patch = part.patch,
+              .m = part.m,
+              .n = part.n,
+              .u0 = part.u0,
+              .v0 = part.v0,
+              .size = part.size};
+    if (part.homogeneous.empty()) {
+        high.points = halveNet(part.points, part.m, part.n, alongU);
+    } else {
+        high.homogeneous = halveNet(part.homogeneous, part.m, part.n, alongU);
+        high.points.resize(high.homogeneous.size());
+    }
+    (alongU ? high.u0 : high.v0) += 0.5 * part.size;
+    bound(part);
+    bound(high);
+    return high;
 }
 
 // Calls visit with those quarters of a part that `isWanted` does not rule out by their bounds.
 template <class IsWanted, class Visit>
-void visitQuarters(const Part& part, const IsWanted& isWanted, const Visit& visit) {
-    for (const Part& half : halves(part, true)) {
-        if (!isWanted(half)) continue;
-        for (Part& quarter : halves(half, false)) {
-            if (!isWanted(quarter)) continue;
-            quarter.size = 0.5 * part.size;
-            quarter.oneToOne = isOneToOne(quarter);
-            visit(std::move(quarter));
+void visitQuarters(const Part& part, const ViewPatch& patch, const IsWanted& isWanted,
+                   const Visit& visit) {
+    Part low = part;
+    Part high = halvePart(low, true);
+    for (Part* half : {&low, &high}) {
+        if (!isWanted(*half)) continue;
+        Part other = halvePart(*half, false);
+        for (Part* quarter : {half, &other}) {
+            if (!isWanted(*quarter)) continue;
+            quarter->size = 0.5 * part.size;
+            judge(*quarter, patch);
+            visit(std::move(*quarter));
         }
     }
 }
 
 }  // namespace
 
+/// A line of sight to a point.
+struct Sheets::Sight {
+    double x, y, z;  // before which patches are counted
+
+    bool mayMeet(const Part& p) const {
+        return x >= p.x0 && x <= p.x1 && y >= p.y0 && y <= p.y1 && p.z0 < z;
+    }
+};
+
 Sheets::Sheets(std::span<const ViewPatch> patches) : mPatches(patches) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     double right = -kInfinity, bottom = -kInfinity;
-    mLeft = mTop = mNearest = kInfinity;
-    mFarthest = -kInfinity;
+    mLeft = mTop = kInfinity;
+    std::vector<Part> wholes;
     for (std::size_t k = 0; k < patches.size(); ++k) {
         const ViewPatch& patch = patches[k];
-        Part part{.patch = static_cast<int>(k)};
-        part.x = patch.x;
-        part.y = patch.y;
-        part.z = patch.z;
-        part.w = patch.w;
+        if (!patch.hasFold) continue;
+        Part part{.patch = static_cast<int>(k), .m = patch.x.m, .n = patch.x.n};
+        part.points.resize(patch.x.c.size());
+        const bool isRational = patch.w.c.size() > 1;
+        if (isRational) part.homogeneous.resize(patch.x.c.size());
+        for (std::size_t i = 0; i < part.points.size(); ++i) {
+            part.points[i] = {patch.x.c[i], patch.y.c[i], patch.z.c[i]};
+            if (isRational) {
+                part.homogeneous[i] = {patch.x.c[i], patch.y.c[i], patch.z.c[i], patch.w.c[i]};
+            }
+        }
         bound(part);
-        part.oneToOne = isOneToOne(part);
         mLeft = std::min(mLeft, part.x0);
         right = std::max(right, part.x1);
         mTop = std::min(mTop, part.y0);
         bottom = std::max(bottom, part.y1);
-        mNearest = std::min(mNearest, part.z0);
-        for (std::size_t i = 0; i < part.z.c.size(); ++i) {
-            const double w = part.w.c.size() > 1 ? part.w.c[i] : 1;
-            mFarthest = std::max(mFarthest, part.z.c[i] / w);
-        }
-        if (patch.hasFold) addPart(std::move(part), 0);
+        wholes.push_back(std::move(part));
     }
+    std::vector<std::vector<Part>> parts(wholes.size());
+    parallelFor(static_cast<std::int64_t>(wholes.size()), [&](std::int64_t i) {
+        const auto k = static_cast<std::size_t>(i);
+        cutPart(std::move(wholes[k]), 0, parts[k]);
+    });
+    for (auto& some : parts) std::move(some.begin(), some.end(), std::back_inserter(mParts));
     mCellWidth = std::max((right - mLeft) / kCells, 1e-300);
     mCellHeight = std::max((bottom - mTop) / kCells, 1e-300);
     mCells.resize(std::size_t{kCells} * kCells);
@@ -149,22 +167,22 @@ Sheets::Sheets(std::span<const ViewPatch> patches) : mPatches(patches) {
         const Part& part = mParts[k];
         for (std::size_t j = row(part.y0); j <= row(part.y1); ++j) {
             for (std::size_t i = column(part.x0); i <= column(part.x1); ++i) {
-                mCells[j * kCells + i].push_back(k);
+                mCells[j * kCells + i].push_back(static_cast<std::uint32_t>(k));
             }
         }
     }
 }
 
-void Sheets::addPart(Part part, int depth) {
+void Sheets::cutPart(Part part, int depth, std::vector<Part>& parts) const {
     // Large parts would be asked in vain too often.
     const bool isSmall = depth >= 2;
     if (depth == kDepthOfParts || (isSmall && part.oneToOne)) {
-        mParts.push_back(std::move(part));
+        parts.push_back(std::move(part));
         return;
     }
     visitQuarters(
-        part, [](const Part&) { return true; },
-        [&](Part quarter) { addPart(std::move(quarter), depth + 1); });
+        part, mPatches[static_cast<std::size_t>(part.patch)], [](const Part&) { return true; },
+        [&](Part quarter) { cutPart(std::move(quarter), depth + 1, parts); });
 }
 
 std::size_t Sheets::column(double x) const {
@@ -177,48 +195,57 @@ std::size_t Sheets::row(double y) const {
         std::clamp(std::floor((y - mTop) / mCellHeight), 0.0, kCells - 1.0));
 }
 
-int Sheets::countIn(const Part& part, const std::array<double, 3>& target) const {
-    const double x = target[0], y = target[1], z = target[2];
-    const auto isAhead = [&](const Part& p) {
-        return x >= p.x0 && x <= p.x1 && y >= p.y0 && y <= p.y1 && p.z0 < z;
-    };
-    if (!isAhead(part)) return 0;
-    if (!part.oneToOne) {
-        if (part.size < kSmallest) return 0;
-        int count = 0;
-        visitQuarters(part, isAhead,
-                      [&](const Part& quarter) { count += countIn(quarter, target); });
-        return count;
-    }
+int Sheets::countCut(const Part& part, const Sight& sight) const {
+    if (part.size < kSmallest) return 0;
+    int count = 0;
+    visitQuarters(
+        part, mPatches[static_cast<std::size_t>(part.patch)],
+        [&](const Part& p) { return sight.mayMeet(p); },
+        [&](const Part& quarter) { count += countIn(quarter, sight); });
+    return count;
+}
+
+int Sheets::countIn(const Part& part, const Sight& sight) const {
+    if (!part.oneToOne) return countCut(part, sight);
+    // By the bound of derivatives a place is not farther from the one that the mean derivative
+    // tells than `bend` of the way.
+    const double half = 0.5 * part.size;
+    const double gx = sight.x - part.middleX, gy = sight.y - part.middleY;
+    const double du0 = gx * part.inverse[0] + gy * part.inverse[1];
+    const double dv0 = gx * part.inverse[2] + gy * part.inverse[3];
+    if (std::max(std::abs(du0), std::abs(dv0)) > half * (1 + 2 * part.bend)) return 0;
     const ViewPatch& patch = mPatches[static_cast<std::size_t>(part.patch)];
-    double u = part.u0 + 0.5 * part.size, v = part.v0 + 0.5 * part.size;
+    double u = part.u0 + half + du0, v = part.v0 + half + dv0;
     ViewPoint p;
-    for (int step = 0; step < 12; ++step) {
+    bool isFound = false;
+    for (int step = 0; step < 12 && !isFound; ++step) {
         p = patch.at(u, v);
         const double area = p.xu * p.yv - p.xv * p.yu;
-        const double du = ((x - p.x) * p.yv - (y - p.y) * p.xv) / area;
-        const double dv = ((y - p.y) * p.xu - (x - p.x) * p.yu) / area;
+        const double du = ((sight.x - p.x) * p.yv - (sight.y - p.y) * p.xv) / area;
+        const double dv = ((sight.y - p.y) * p.xu - (sight.x - p.x) * p.yu) / area;
         u += du;
         v += dv;
-        if (std::max(std::abs(du), std::abs(dv)) < 1e-10 * part.size) break;
+        isFound = std::max(std::abs(du), std::abs(dv)) < 1e-7 * part.size;
+        if (isFound) p.z += p.zu * du + p.zv * dv;
         // Outside of the part the map may be anything.
-        if (std::abs(u - part.u0 - 0.5 * part.size) > 2 * part.size ||
-            std::abs(v - part.v0 - 0.5 * part.size) > 2 * part.size) {
-            return 0;
+        if (!(std::abs(u - part.u0 - half) < 2 * half && std::abs(v - part.v0 - half) < 2 * half)) {
+            break;
         }
     }
+    if (!isFound) return countCut(part, sight);
     // Parts share their borders, and each has two of its own.
     const bool isInU =
         u >= part.u0 && (u < part.u0 + part.size || (u <= 1 && part.u0 + part.size == 1));
     const bool isInV =
         v >= part.v0 && (v < part.v0 + part.size || (v <= 1 && part.v0 + part.size == 1));
-    return isInU && isInV && p.z < z ? 1 : 0;
+    return isInU && isInV && p.z < sight.z ? 1 : 0;
 }
 
-int Sheets::countBefore(double x, double y, double z) const {
+int Sheets::countBefore(const CurvePoint& point, double margin) const {
+    const Sight sight{point.x, point.y, point.z - margin};
     int count = 0;
-    for (const std::size_t k : mCells[row(y) * kCells + column(x)]) {
-        count += countIn(mParts[k], {x, y, z});
+    for (const std::uint32_t k : mCells[row(point.y) * kCells + column(point.x)]) {
+        if (sight.mayMeet(mParts[k])) count += countIn(mParts[k], sight);
     }
     return count;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "outline/control_net.h"
+#include "outline/curve.h"
 #include "outline/view_patch.h"
 
 #include <cstddef>
@@ -17,33 +19,38 @@ class Sheets {
     /// The patches are kept by reference.
     explicit Sheets(std::span<const ViewPatch> patches);
 
-    /// How many times the line of sight through (x, y) of the page meets patches before depth z.
-    int countBefore(double x, double y, double z) const;
-
-    /// The least and the largest depth of all patches.
-    double nearest() const { return mNearest; }
-    double farthest() const { return mFarthest; }
+    /// How many times the line of sight to a point of a curve meets patches that are nearer than it
+    /// by more than `margin`. Where a patch folds within 1/8192 of its parameters it is not met.
+    int countBefore(const CurvePoint& point, double margin) const;
 
     /// A part of a patch, as the page sees it.
     struct Part {
         int patch = 0;
+        int m = 0, n = 0;  ///< degrees
         double u0 = 0, v0 = 0, size = 1;
-        Bernstein2 x, y, z, w;
+        ControlNet<3> points;       ///< on the page
+        ControlNet<4> homogeneous;  ///< empty if not rational
         double x0 = 0, x1 = 0, y0 = 0, y1 = 0, z0 = 0;
         bool oneToOne = false;
+        /// Of a one-to-one part: its middle on the page, the inverse of a mean derivative, and by
+        /// how much derivatives differ from that at most, relatively.
+        double middleX = 0, middleY = 0;
+        std::array<double, 4> inverse{};
+        double bend = 0;
     };
 
   private:
-    void addPart(Part part, int depth);
-    int countIn(const Part& part, const std::array<double, 3>& target) const;
+    struct Sight;
+    void cutPart(Part part, int depth, std::vector<Part>& parts) const;
+    int countIn(const Part& part, const Sight& sight) const;
+    int countCut(const Part& part, const Sight& sight) const;
     std::size_t column(double x) const;
     std::size_t row(double y) const;
 
     std::span<const ViewPatch> mPatches;
     std::vector<Part> mParts;
     double mLeft = 0, mTop = 0, mCellWidth = 1, mCellHeight = 1;
-    std::vector<std::vector<std::size_t>> mCells;  // parts by the place that they may cover
-    double mNearest = 0, mFarthest = 0;
+    std::vector<std::vector<std::uint32_t>> mCells;  // parts by the place that they may cover
 };
 
 }  // namespace bandvox

@@ -26,10 +26,11 @@ std::vector<Curve> surfaceCurves(std::span<const BezierPatch> patches,
     std::vector<Curve> folds;
     for (auto& some : perPatch) std::move(some.begin(), some.end(), std::back_inserter(folds));
     const double crease = std::cos(options.creaseAngle * std::numbers::pi / 180);
-    BorderCurves borders = borderCurves(patches, seen, folds, crease, sampling);
+    const std::vector<SharedSide> sides = matchSides(patches, seen);
+    BorderCurves borders = borderCurves(patches, seen, sides, folds, crease, sampling);
     std::move(borders.contours.begin(), borders.contours.end(), std::back_inserter(folds));
     std::vector<Curve> meetings;
-    if (options.intersections) meetings = meetingCurves(seen, sampling, progress);
+    if (options.intersections) meetings = meetingCurves(seen, sides, sampling, progress);
     std::vector<Curve> curves;
     for (auto* kind : {&folds, &borders.boundaries, &borders.creases, &meetings}) {
         std::vector<Curve> joined = joinCurves(std::move(*kind), sampling);

@@ -14,7 +14,7 @@ namespace {
 
 // A surface in front has to be nearer by this part of the page's size, since the curve's own
 // surface is met there, too, twice where it folds.
-constexpr double kDepthMargin = 3e-5;
+constexpr double kDepthMargin = 1e-7;
 
 /// A curve by its length.
 class CurveRuler {
@@ -85,7 +85,7 @@ class CurveSight {
 
     int hiddenAt(double length) const {
         const CurvePoint p = pointAt(length);
-        return mSheets.countBefore(p.x, p.y, p.z - kDepthMargin * mSampling.size);
+        return mSheets.countBefore(p, kDepthMargin * mSampling.size);
     }
 
     void examine(double from, double to) {
@@ -167,13 +167,27 @@ class CurveSight {
         return result;
     }
 
+    // A corner is one of several points in the same place.
+    CurvePoint endAt(double length) const {
+        if (length == 0) return mCurve.points.front();
+        if (length == mRuler.whole()) return mCurve.points.back();
+        CurvePoint end = pointAt(length);
+        const std::size_t i = mRuler.parts(mRuler.placeAt(length)).first;
+        const std::size_t last = std::min(i + 2, mCurve.points.size() - 1);
+        for (std::size_t k = i > 0 ? i - 1 : 0; k <= last; ++k) {
+            const double away = std::abs(mRuler.lengthAt(static_cast<double>(k)) - length);
+            end.corner |= mCurve.points[k].corner && away < 1e-9 * mSampling.size;
+        }
+        return end;
+    }
+
     Curve part(const Run& run) const {
         Curve part{.kind = mCurve.kind, .object = mCurve.object};
         const auto begin = mRuler.parts(mRuler.placeAt(run.from)).first + 1;
         const auto end = mRuler.parts(mRuler.placeAt(run.to)).first;
-        part.points.push_back(run.from == 0 ? mCurve.points.front() : pointAt(run.from));
+        part.points.push_back(endAt(run.from));
         for (std::size_t i = begin; i <= end; ++i) part.points.push_back(mCurve.points[i]);
-        part.points.push_back(run.to == mRuler.whole() ? mCurve.points.back() : pointAt(run.to));
+        part.points.push_back(endAt(run.to));
         return part;
     }
 
