@@ -19,15 +19,6 @@ const std::string kQuarter =
     "v 1 0 0\nv 1 1 0 0.7071067811865476\nv 0 1 0\nv 1 0 2\nv 1 1 2 0.7071067811865476\nv 0 1 2\n"
     "cstype rat bezier\ndeg 2 1\nsurf 0 1 0 1 1 2 3 4 5 6\nparm u 0 1\nparm v 0 1\nend\n";
 
-nlohmann::json gridOf(const TemporaryFolder& folder, const std::string& file) {
-    writeText(folder / "info.json", "");
-    const RunResult info =
-        runBandvox({"info", file, "--json"},
-                   {.folder = folder.path(), .standardOutput = (folder / "info.json").string()});
-    EXPECT_EQ(info.status, 0) << info.err;
-    return nlohmann::json::parse(readText(folder / "info.json"))["grids"][0];
-}
-
 TEST(PatchSolidCommand, FillsTheTeapotWhateverTheNumberOfThreads) {
     const TemporaryFolder folder;
     const RunResult one = runBandvox({"convert", kTeapotBpt, "-o", "one.vdb", "-r", "24",
