@@ -4,6 +4,8 @@
 
 #include <bandvox/core/error.h>
 
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
 
 namespace bandvox::app {

@@ -48,6 +48,7 @@ struct SampledJets {
 const std::vector<SurfaceQuantity>& surfaceQuantities() {
     static const std::vector<SurfaceQuantity> all = [] {
         std::vector<SurfaceQuantity> made;
+        made.reserve(kQuantities.size());
         for (const QuantityEntry& entry : kQuantities) made.push_back(entry.quantity);
         return made;
     }();
