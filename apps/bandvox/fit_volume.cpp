@@ -48,13 +48,12 @@ VolumeQuantities readVolumeQuantities(const CommandLine& line) {
     if (!text) return {};
     VolumeQuantities quantities{false, false};
     for (const std::string_view word : split(*text, ',')) {
-        if (word == "value") {
-            quantities.value = true;
-        } else if (word == "gradient") {
-            quantities.gradient = true;
-        } else {
+        const bool isValue = word == "value";
+        bool& wanted = isValue ? quantities.value : quantities.gradient;
+        if ((!isValue && word != "gradient") || wanted) {
             line.fail("quantities", "value, gradient, or both with a comma between");
         }
+        wanted = true;
     }
     return quantities;
 }
@@ -173,7 +172,7 @@ std::vector<OptionEntry> fitVolumeEntries() {
          "The places are in space, x y z: the values become grids of a .vdb file, named after "
          "their columns, Cd of columns named r, g and b.",
          group},
-        {"reach", 0, "R", "4 times the points' distance",
+        {"reach", 0, "R", "4 times the points' distance, at most half the box",
          "How far from the points there are values, world units; voxels farther off are inactive, "
          "and 0.",
          group},

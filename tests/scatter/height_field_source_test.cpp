@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -67,6 +69,20 @@ TEST(HeightFieldSource, PatchesFaceOutward) {
 TEST(HeightFieldSource, RefusesABaseInTheSurface) {
     const BsplineSurface surface = fitSurface(sampled(franke33(), bump)).sum();
     EXPECT_THROW(makeHeightFieldSource("bump", surface, 0.1), Error);
+}
+
+TEST(HeightFieldSource, TakesABaseBelowTheSurfaceButNotBelowItsOrdinates) {
+    // One cell, a parabola that goes down to 0 in the middle; ordinates go down to -1/3.
+    BsplineSurface surface({0, 0, 1, 1}, {1, 1}, 1);
+    const std::array<double, 4> along{23.0 / 3, -1.0 / 3, -1.0 / 3, 23.0 / 3};
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) surface.control(0)[4 * i + j] = along[i];
+    }
+    ASSERT_NEAR(surface.value(0.5, 0.3), 0, 1e-12);
+    const auto ordinates = surface.bezierOrdinates(0, 0);
+    EXPECT_LT(*std::min_element(ordinates.begin(), ordinates.end()), -0.1);
+    EXPECT_NO_THROW(makeHeightFieldSource("valley", surface, -0.01));
+    EXPECT_THROW(makeHeightFieldSource("valley", surface, 0.01), Error);
 }
 
 }  // namespace

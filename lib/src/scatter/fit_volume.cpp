@@ -1,3 +1,4 @@
+#include "core/words.h"
 #include "scatter/net_stencil.h"
 #include "scatter/space_bumps.h"
 #include "scatter/space_solver.h"
@@ -82,16 +83,17 @@ int VolumeFitting::chooseLevel() {
         ++level;
     }
     constexpr double kReachInSpacings = 4;
+    constexpr double kFarthestUnasked = 0.5;  // of the longest side, where points are few
     mParts.reach = mOptions.reach ? *mOptions.reach / mParts.longest
-                                  : kReachInSpacings * spacingOf(mParts.points(), level);
+                                  : std::min(kFarthestUnasked,
+                                             kReachInSpacings * spacingOf(mParts.points(), level));
     constexpr double kFarthest = 4;
     if (!(mParts.reach > 0 && mParts.reach <= kFarthest)) {
         throw Error(ErrorKind::Usage,
-                    "the reach of a volume's fit is " +
-                        std::to_string(mParts.reach * mParts.longest) +
+                    "the reach of a volume's fit is " + inShort(mParts.reach * mParts.longest) +
                         "; expected more than 0, and up to 4 times the longest side of the "
                         "points' box, which is " +
-                        std::to_string(mParts.longest));
+                        inShort(mParts.longest));
     }
     while (level > 1 && std::ldexp(mParts.reach, level) > SpaceNet::kMostReach) --level;
     return level;

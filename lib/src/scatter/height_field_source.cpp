@@ -1,3 +1,4 @@
+#include "core/words.h"
 #include "scatter/cubic_basis.h"
 #include "source/patch_source.h"
 
@@ -10,6 +11,7 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace bandvox {
 namespace {
@@ -147,6 +149,63 @@ std::array<double, 2> ordinateRange(const BsplineSurface& surface, int column) {
     return range;
 }
 
+using Ordinates = std::array<double, 16>;  // of a patch, [x][y]
+
+/// Both halves of four ordinates that are `stride` apart, by de Casteljau's rule.
+void halve(const Ordinates& whole, std::size_t first, std::size_t stride, Ordinates& low,
+           Ordinates& high) {
+    std::array<double, 4> c{};
+    for (std::size_t k = 0; k < 4; ++k) c[k] = whole[first + k * stride];
+    for (std::size_t k = 0; k < 4; ++k) {
+        low[first + k * stride] = c[0];
+        high[first + (3 - k) * stride] = c[3 - k];
+        for (std::size_t i = 0; i + k + 1 < 4; ++i) c[i] = (c[i] + c[i + 1]) / 2;
+    }
+}
+
+std::array<Ordinates, 4> quarters(const Ordinates& patch) {
+    Ordinates left{}, right{};
+    for (std::size_t b = 0; b < 4; ++b) halve(patch, b, 4, left, right);
+    std::array<Ordinates, 4> parts{};
+    for (std::size_t a = 0; a < 4; ++a) {
+        halve(left, 4 * a, 1, parts[0], parts[1]);
+        halve(right, 4 * a, 1, parts[2], parts[3]);
+    }
+    return parts;
+}
+
+double lowestOf(const Ordinates& patch) {
+    return *std::min_element(patch.begin(), patch.end());
+}
+
+/// How far the surface goes down, to 1e-9 of the range of its ordinates: parts that may be lower
+/// than any place that is known are divided.
+double lowestHeight(const BsplineSurface& surface, int column) {
+    const auto [low, high] = ordinateRange(surface, column);
+    constexpr double kNear = 1e-9;
+    const double enough = kNear * (high - low);
+    double lowest = high;
+    std::vector<Ordinates> parts;
+    const auto look = [&](const Ordinates& patch) {
+        lowest = std::min({lowest, patch[0], patch[3], patch[12], patch[15]});
+        if (lowestOf(patch) < lowest - enough) parts.push_back(patch);
+    };
+    const auto [nx, ny] = surface.cells();
+    for (int i = 0; i < nx; ++i) {
+        for (int j = 0; j < ny; ++j) {
+            parts.clear();
+            look(surface.bezierOrdinates(i, j, column));
+            while (!parts.empty()) {
+                const Ordinates patch = parts.back();
+                parts.pop_back();
+                if (lowestOf(patch) >= lowest - enough) continue;
+                for (const Ordinates& quarter : quarters(patch)) look(quarter);
+            }
+        }
+    }
+    return lowest;
+}
+
 }  // namespace
 
 double heightBelow(const BsplineSurface& surface, double margin, int column) {
@@ -159,11 +218,11 @@ double heightBelow(const BsplineSurface& surface, double margin, int column) {
 std::unique_ptr<BoundarySource> makeHeightFieldSource(const std::string& name,
                                                       const BsplineSurface& surface, double base,
                                                       int column) {
-    const double lowest = ordinateRange(surface, column)[0];
+    const double lowest = lowestHeight(surface, column);
     if (!(lowest > base)) {
-        throw Error(ErrorKind::Usage, "the base at " + std::to_string(base) +
+        throw Error(ErrorKind::Usage, "the base at " + inFull(base) +
                                           " is not below the surface, which goes down to " +
-                                          std::to_string(lowest) + "; expected a lower one");
+                                          inFull(lowest) + "; expected a lower one");
     }
     PatchList patches;
     double volume = 0;

@@ -115,7 +115,7 @@ void checkAgreement(const ScatteredPoints& points, const std::vector<std::size_t
         text.precision(10);
         text << "the place " << shownPlace(points, order[begin]) << " has values from " << low
              << lineOfPoint(points, least) << " to " << high << lineOfPoint(points, most)
-             << " in column " << column + 1
+             << " in value " << column + 1
              << "; expected one value, or such as differ by no more than "
              << allowed[static_cast<std::size_t>(column)];
         throw Error(ErrorKind::Input, text.str());

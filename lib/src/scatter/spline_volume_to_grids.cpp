@@ -1,3 +1,4 @@
+#include "core/words.h"
 #include "scatter/space_bumps.h"
 #include "scatter/spline_volume_parts.h"
 
@@ -236,8 +237,8 @@ openvdb::GridPtrVec splineVolumeToGrids(const SplineVolume& volume,
                                         const std::vector<ColumnGrid>& grids, double voxelSize,
                                         Progress& progress) {
     if (!(voxelSize > 0) || !std::isfinite(voxelSize)) {
-        throw Error(ErrorKind::Usage, "voxels have a side of " + std::to_string(voxelSize) +
-                                          "; expected more than 0");
+        throw Error(ErrorKind::Usage,
+                    "voxels have a side of " + inShort(voxelSize) + "; expected more than 0");
     }
     for (const ColumnGrid& grid : grids) {
         const bool isThere = grid.column >= 0 && (grid.columns == 1 || grid.columns == 3) &&
@@ -256,7 +257,7 @@ openvdb::GridPtrVec splineVolumeToGrids(const SplineVolume& volume,
     }
     constexpr double kMostVoxels = 1 << 28U;
     if (!((farthest + volume.reach()) / voxelSize < kMostVoxels)) {
-        throw Error(ErrorKind::Usage, "voxels of side " + std::to_string(voxelSize) +
+        throw Error(ErrorKind::Usage, "voxels of side " + inShort(voxelSize) +
                                           " have indices beyond 2^28; expected larger ones");
     }
     const bool hasGradients = std::any_of(grids.begin(), grids.end(),
@@ -266,9 +267,9 @@ openvdb::GridPtrVec splineVolumeToGrids(const SplineVolume& volume,
     const bool isEmpty = std::all_of(leaves.begin(), leaves.end(),
                                      [](const SampledLeaf& leaf) { return leaf.values.empty(); });
     if (isEmpty) {
-        throw Error(ErrorKind::Result,
-                    "no voxel of side " + std::to_string(voxelSize) + " has its centre within " +
-                        std::to_string(volume.reach()) + " of a point; expected smaller ones");
+        throw Error(ErrorKind::Result, "no voxel of side " + inShort(voxelSize) +
+                                           " has its centre within " + inShort(volume.reach()) +
+                                           " of a point; expected smaller ones");
     }
     openvdb::GridPtrVec result;
     for (const ColumnGrid& wanted : grids) {

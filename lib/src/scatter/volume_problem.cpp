@@ -1,5 +1,6 @@
 #include "scatter/volume_problem.h"
 
+#include "core/words.h"
 #include "scatter/column_scale.h"
 #include "scatter/fit_limits.h"
 
@@ -28,7 +29,7 @@ SplineVolumeParts makeUnitVolume(const MergedPoints& merged, SpaceColumns& colum
     parts.longest = *std::max_element(parts.size.begin(), parts.size.end());
     if (!(parts.longest > 0) || !std::isfinite(parts.longest)) {
         throw Error(ErrorKind::Input, "the points' box has a longest side of " +
-                                          std::to_string(parts.longest) +
+                                          inShort(parts.longest) +
                                           "; expected two places at least, and a finite box");
     }
     std::vector<std::array<double, 3>> at(points.size());

@@ -5,6 +5,7 @@
 #include <bandvox/core/error.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 namespace bandvox {
@@ -108,14 +109,16 @@ void standOnBase(std::vector<BezierPatch>& patches, JoinedPatches& joined, doubl
         for (BezierPatch& patch : patches) patch = turned(patch);
         for (OpenSide& side : loops[0]) std::reverse(side.control.begin(), side.control.end());
     }
+    double lowest = std::numeric_limits<double>::infinity();
     for (const BezierPatch& patch : patches) {
-        for (const auto& p : patch.control) {
-            if (p[2] > base * p[3]) continue;
-            throw Error(ErrorKind::Usage, "the base at " + inFull(base) +
-                                              " is not below the surface, which has a control "
-                                              "point at " +
-                                              inFull(p[2] / p[3]) + "; expected a lower one");
-        }
+        for (const auto& p : patch.control) lowest = std::min(lowest, p[2] / p[3]);
+    }
+    if (!(lowest > base)) {
+        throw Error(ErrorKind::Usage,
+                    "the base at " + inFull(base) +
+                        " is not below all control points of the surface, the lowest of which is "
+                        "at " +
+                        inFull(lowest) + "; expected a lower one");
     }
     Vec3d center = holeOf(loops[0]).center;
     center[2] = base;

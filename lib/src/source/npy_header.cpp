@@ -1,6 +1,8 @@
+#include "core/words.h"
 #include "source/array_header.h"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -94,6 +96,10 @@ NpyLayout readNpyLayout(const std::filesystem::path& path, std::istream& stream,
         failArray(path, "its header has no shape");
     }
     layout.sizes = numbersIn(path, shape.substr(0, close + 1), dimensions, "sizes");
+    for (const double size : layout.sizes) {
+        if (size >= 0 && size == std::floor(size)) continue;
+        failArray(path, "it has the size " + inShort(size) + "; expected whole numbers");
+    }
     return layout;
 }
 

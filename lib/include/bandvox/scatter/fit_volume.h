@@ -23,7 +23,7 @@ struct FitVolumeOptions {
     std::optional<int> maxLevel;
     /// How far from the points the field is there, world units; above 0, 4 times the longest side
     /// of the points' box at most. Default: 4 times the distance within which nine points of ten
-    /// have another one.
+    /// have another one, and half of the longest side at most.
     std::optional<double> reach;
     /// 1 / length, in units of the box's longest side, 0.01 to 10000: the field is stiff within
     /// that length, and like a membrane farther off.

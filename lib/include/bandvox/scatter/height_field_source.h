@@ -11,7 +11,7 @@ namespace bandvox {
 /// The solid under a height field: between the surface and the plane z = base, over the surface's
 /// rectangle. Its boundary is the surface's Bézier patches, without tessellation, walls of the same
 /// kind, and the bottom. Throws Error(ErrorKind::Usage) if the surface is not above the base
-/// everywhere, as its Bézier ordinates tell.
+/// everywhere.
 std::unique_ptr<BoundarySource> makeHeightFieldSource(const std::string& name,
                                                       const BsplineSurface& surface, double base,
                                                       int column = 0);
