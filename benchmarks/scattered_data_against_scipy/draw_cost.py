@@ -10,7 +10,7 @@ import pathlib
 import sys
 
 WIDTH, HEIGHT, LEFT, TOP, BOTTOM = 520, 330, 60, 16, 44
-DECADES_X, DECADES_Y = (3, 7), (-2, 2)
+DECADES_X, DECADES_Y = (3, 7), (-3, 3)
 
 
 def place(places, seconds):
@@ -48,8 +48,8 @@ def main():
         x, y = place(10 ** DECADES_X[0], 10**power)
         parts.append(line([(x, y), place(10 ** DECADES_X[1], 10**power)], "#ddd"))
         parts.append(text(x - 8, y + 4, f"{10.0**power:g} s", "end"))
-    parts.append(line([place(1e4, 0.01), place(1e7, 10)], "#999", "4 4"))
-    parts.append(text(*place(2.2e4, 0.012), "1 \u00b5s for each place", "start", "#888"))
+    parts.append(line([place(1e3, 0.001), place(1e7, 10)], "#999", "4 4"))
+    parts.append(text(*place(4e4, 0.02), "1 \u00b5s for each place", "start", "#888"))
     parts.append(text((LEFT + WIDTH - 20) / 2, HEIGHT - 8, "places"))
     parts += curve(rows, "clough_tocher", "#b5651d", "Clough-Tocher (SciPy)")
     parts += curve(rows, "processor_seconds", "#1f5fa8", "bandvox fit")
