@@ -10,10 +10,10 @@
 
 namespace bandvox::app {
 
-void sayPoints(CommandRun& run, const std::string& input, const NamedPoints& named) {
+void sayPoints(CommandRun& run, const std::string& input, const ScatteredPoints& points) {
     run.say("read     " + input + ": " +
-            formatCount(static_cast<std::int64_t>(named.points.size()), "point", "points") +
-            " with " + joined(named.names, ", "));
+            formatCount(static_cast<std::int64_t>(points.size()), "point", "points") + " with " +
+            joined(points.names, ", "));
 }
 
 void sayDuplicates(CommandRun& run, std::size_t points, std::size_t duplicates) {

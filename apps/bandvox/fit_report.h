@@ -10,7 +10,7 @@
 // What `bandvox fit` says of surfaces and of volumes alike.
 namespace bandvox::app {
 
-void sayPoints(CommandRun& run, const std::string& input, const NamedPoints& named);
+void sayPoints(CommandRun& run, const std::string& input, const ScatteredPoints& points);
 
 /// Says and counts how many points there are, and how many were in the place of another.
 void sayDuplicates(CommandRun& run, std::size_t points, std::size_t duplicates);

@@ -64,7 +64,7 @@ SharedSurface fitted(const py::object& places, const py::object& values,
         points = scatteredOf(places, values, 2);
     }
     const SurfaceFit fit = inBackground(progress, threads, [&](Progress& watched) {
-        if (isFile) points = readScatteredPoints(path, {columns, false}, watched).points;
+        if (isFile) points = readScatteredPoints(path, {columns, false}, watched);
         return fitSurface(points, options, watched);
     });
     judge(fit, options, hasTolerance);

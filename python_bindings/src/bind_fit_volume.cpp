@@ -68,7 +68,7 @@ SharedVolume fittedVolume(const py::object& places, const py::object& values,
         points = scatteredOf(places, values, 3);
     }
     object->fit = inBackground(progress, threads, [&](Progress& watched) {
-        if (isFile) points = readScatteredPoints(path, {columns, true}, watched).points;
+        if (isFile) points = readScatteredPoints(path, {columns, true}, watched);
         return fitVolume(points, options, watched);
     });
     judgeVolume(object->fit, options, hasTolerance);
