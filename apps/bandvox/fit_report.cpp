@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
+#include <optional>
+#include <string>
 
 namespace bandvox::app {
 
@@ -26,14 +28,10 @@ void sayDuplicates(CommandRun& run, std::size_t points, std::size_t duplicates) 
 }
 
 void judgeResidual(CommandRun& run, const FitResidual& residual) {
-    if (residual.largest <= residual.expected) return;
-    std::string message = "the " + residual.what + " is off by ";
-    message += formatNumber(residual.largest, 3) + " of the range at a point; expected ";
-    message += formatNumber(residual.expected, 3) + " at most, by --tolerance";
-    // As where a crowd of points and one far away share a net: what is between them is anything.
-    constexpr double kUseless = 0.01;
-    const bool isUseless = !residual.isLimited && !(residual.largest <= kUseless);
-    if (residual.isAsked || isUseless) throw Error(ErrorKind::Result, message);
+    const std::optional<FitFault> fault = faultOf(residual);
+    if (!fault) return;
+    const std::string message = fault->message + ", by --tolerance";
+    if (fault->isError) throw Error(ErrorKind::Result, message);
     run.warn({message}, ErrorKind::Result);
 }
 
