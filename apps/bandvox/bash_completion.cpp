@@ -73,7 +73,9 @@ std::string bashFunction(const CommandTable& table) {
         if (statements.empty()) {
             free += (free.empty() ? "" : " | ") + labels;
         } else {
-            cases += "        " + labels + ") " + statements + " ;;\n";
+            cases += "        ";
+            cases += labels + ") ";
+            cases += statements + " ;;\n";
         }
     }
     // Nothing can be said of the values of the others, but they are no inputs.
