@@ -45,7 +45,8 @@ This is the library that the other packages work with.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libbandvox-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "${_this_library}, libopenvdb-dev (>= 10), libtbb-dev, libimath-dev, libboost-iostreams-dev")
+    "${_this_library}, libopenvdb-dev (>= 10), libtbb-dev, libimath-dev, \
+libblosc-dev, libboost-iostreams-dev, zlib1g-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "${_about}\
 These are the headers and the descriptions for CMake and pkg-config.")
 
@@ -70,6 +71,8 @@ if(BANDVOX_BUILD_PYTHON)
     set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${_this_library}, python3-numpy, \
 python3 (>= ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}~), \
 python3 (<< ${Python3_VERSION_MAJOR}.${_next})")
+    # bandvox.distributed runs the command on the workers of a Dask cluster.
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "bandvox (= ${_full_version}), python3-distributed")
     set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
         ${PROJECT_SOURCE_DIR}/cmake/debian/postinst ${PROJECT_SOURCE_DIR}/cmake/debian/prerm)
     set(CPACK_DEBIAN_PYTHON_DESCRIPTION "${_about}\
