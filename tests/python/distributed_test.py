@@ -13,14 +13,17 @@ import numpy as np
 import pytest
 
 import bandvox
+import bandvox.distributed as farm
+
+try:
+    import distributed
+except ImportError:
+    pytestmark = pytest.mark.skip(reason="python3-distributed is not installed")
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 COMMAND = os.path.join(os.environ["BANDVOX_BUILD_DIR"], "apps", "bandvox", "bandvox")
 CUBE = """v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1
 f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"""
-
-distributed = pytest.importorskip("distributed", reason="python3-distributed is not installed")
-farm = pytest.importorskip("bandvox.distributed")
 
 
 @pytest.fixture(scope="module")
