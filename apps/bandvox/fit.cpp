@@ -224,12 +224,13 @@ void runFit(const CommandLine& line) {
     const FitRequest request = parseFit(line);
     CommandRun run(line);
     AtomicFile output(request.output.path);
-    NamedPoints named = readScatteredPoints(request.input, request.columns, run.progress());
-    sayPoints(run, request.input, named);
+    const ScatteredPoints points =
+        readScatteredPoints(request.input, request.columns, run.progress());
+    sayPoints(run, request.input, points);
     SurfaceFit fit;
     {
         const ProgressStage stage(run.progress(), "fitting", 0);
-        fit = fitSurface(named.points, request.fit, run.progress());
+        fit = fitSurface(points, request.fit, run.progress());
     }
     sayFit(run, fit);
     if (request.fit.noise <= 0) {
@@ -240,7 +241,7 @@ void runFit(const CommandLine& line) {
     const BsplineSurface surface = chosenSum(request, fit);
     fit.levels.clear();
     requirePatches(request, surface);
-    writeFit(run, output, request.output, {surface, named.names, request.input});
+    writeFit(run, output, request.output, {surface, points.names, request.input});
 }
 
 }  // namespace bandvox::app
