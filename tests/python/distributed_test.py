@@ -74,27 +74,45 @@ def test_eight_shards_are_what_one_machine_makes(client, tmp_path):
     assert seen[-1] == (9, 9, "merge")
 
 
+def wait_for(holds):
+    deadline = time.monotonic() + 60
+    while not holds() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert holds()
+
+
+def is_gone(pid):
+    return not os.path.exists(f"/proc/{pid.read_text().strip()}")
+
+
 def test_a_killed_worker_costs_time_alone(client, tmp_path):
-    words = ("shape:tree", "--resolution", "160")
-    whole = on_one_machine(tmp_path, *words)
+    whole = on_one_machine(tmp_path, "shape:tree", "--resolution", "160")
+    # The first run of one part never ends.
+    pid = tmp_path / "one" / "pid"
+    script = tmp_path / "one" / "hanging"
+    script.write_text(f"""#!/bin/sh
+case "$*" in *"--shard 5/8"*) mkdir {pid}.first && echo $$ > {pid} && exec sleep 600 ;; esac
+exec {COMMAND} "$@"
+""")
+    script.chmod(0o755)
     pids = client.run(os.getpid)
     killed = []
 
-    def kill_one(*_):
-        # One that is at work: the other is, when the first task is done.
-        deadline = time.monotonic() + 60
-        while not killed and time.monotonic() < deadline:
-            busy = [worker for worker, keys in client.processing().items() if keys]
-            if busy:
-                os.kill(pids[busy[0]], signal.SIGKILL)
-                killed.append(busy[0])
+    def kill_its_worker(*_):
+        if killed or not pid.exists():
+            return
+        killed.extend(worker for worker, keys in client.processing().items()
+                      if any("shard-0005" in str(key) for key in keys))
+        os.kill(pids[killed[0]], signal.SIGKILL)
 
     report = farm.convert_volume(client, "shape:tree", tmp_path / "tree.vdb", shards=8,
-                                 resolution=160, executable=COMMAND, progress=kill_one)
-    assert killed
+                                 resolution=160, executable=str(script), progress=kill_its_worker)
+    assert len(killed) == 1
     expect_same(tmp_path / "tree.vdb", whole)
     assert names_in(tmp_path) == ["tree.vdb"]
     assert report.tries == 10 and not report.failures
+    # What the worker had begun went with it.
+    wait_for(lambda: is_gone(pid))
     client.wait_for_workers(2, timeout=60)
 
 
@@ -205,12 +223,6 @@ def test_a_command_that_is_not_there_is_said(client, tmp_path):
 
 
 def test_an_interruption_ends_the_runs(client, tmp_path):
-    def wait_for(holds):
-        deadline = time.monotonic() + 60
-        while not holds() and time.monotonic() < deadline:
-            time.sleep(0.05)
-        assert holds()
-
     pid = tmp_path / "pid"
 
     def interrupt(*_):
@@ -229,7 +241,7 @@ exec sleep 600
         farm.convert_volume(client, "shape:cube", tmp_path / "cube.vdb", shards=2, resolution=8,
                             executable=str(script), progress=interrupt)
     assert names_in(tmp_path) == ["pid", "slow"]
-    wait_for(lambda: not os.path.exists(f"/proc/{pid.read_text().strip()}"))
+    wait_for(lambda: is_gone(pid))
 
 
 def test_a_task_takes_what_it_asks_for():
