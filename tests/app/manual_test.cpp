@@ -258,11 +258,54 @@ TEST_F(Manual, CompletesInFish) {
     EXPECT_EQ(offered("bandvox info n"), Words{});
 }
 
-TEST_F(Manual, IsWellFormedForZsh) {
+// Types a line into a zsh on a terminal of its own, and tells what its completion adds.
+constexpr const char* kZshDriver = R"zsh(
+zmodload zsh/zpty
+place=$1 line=$2 found=$3
+zpty shell zsh -f -i
+tell() { zpty -w shell "$1" }
+tell "PS1= fpath=(${(q)place} \$fpath)"
+tell 'autoload -U compinit; compinit -u -D'
+tell 'compadd() { local -a added; builtin compadd -A added "$@"
+    ((${#added})) && print -rl -- $added >> '${(q)found}'; builtin compadd "$@" }'
+tell 'complete-once() { zle complete-word; print END >> '${(q)found}' }'
+tell 'zle -N complete-once; bindkey "^I" complete-once'
+zpty -w -n shell "$line"$'\t'
+for ((i = 0; i < 300; ++i)) {
+    [[ -e $found && "$(< $found)" == *END ]] && break
+    sleep 0.1
+}
+zpty -d shell
+)zsh";
+
+TEST_F(Manual, CompletesInZsh) {
     if (!hasProgram("zsh")) GTEST_SKIP() << "zsh is not installed";
-    const RunResult result = runProgram({"zsh", "-f", "-n", file("zsh/_bandvox").string()});
-    EXPECT_EQ(result.status, 0);
-    EXPECT_EQ(result.err, "");
+    const RunResult checked = runProgram({"zsh", "-f", "-n", file("zsh/_bandvox").string()});
+    EXPECT_EQ(checked.status, 0);
+    EXPECT_EQ(checked.err, "");
+    writeText(folder() / "bunny.obj", "");
+    writeText(folder() / "bones.md", "");
+    const auto offered = [&](const std::string& line) {
+        const std::filesystem::path found = folder() / "found";
+        std::filesystem::remove(found);
+        runProgram(
+            {"zsh", "-f", "-c", kZshDriver, "zsh", file("zsh").string(), line, found.string()},
+            {.folder = folder()});
+        Words words = linesOf(readText(found));
+        if (words.empty() || words.back() != "END") return Words{"never came to an end"};
+        words.pop_back();
+        // Functions of zsh add some words again when they look for a common beginning.
+        words = sorted(words);
+        words.erase(std::unique(words.begin(), words.end()), words.end());
+        return words;
+    };
+    EXPECT_EQ(offered("bandvox con"), Words{"convert"});
+    EXPECT_EQ(offered("bandvox help v"), (Words{"view", "voxelize"}));
+    EXPECT_EQ(offered("bandvox convert --route "), (Words{"auto", "exact", "sampled", "winding"}));
+    EXPECT_EQ(offered("bandvox outline --kinds crease,co"), Words{"contour"});
+    EXPECT_EQ(offered("bandvox render a.vdb --samp"), Words{"--samples"});
+    EXPECT_EQ(offered("bandvox convert shape:to"), Words{"shape:torus"});
+    EXPECT_EQ(offered("bandvox convert -o b"), Words{"bunny.obj"});
 }
 
 }  // namespace
