@@ -7,7 +7,9 @@ import importlib
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
+import tempfile
 import time
 import uuid
 from typing import Any, Deque, Dict, Generator, List, NamedTuple, Optional, Sequence, Set, Tuple
@@ -88,21 +90,24 @@ def attempt(task: Task, folder: str, threads: Optional[int]) -> Outcome:
     # The command ends with the worker.
     if shutil.which("setpriv"):
         words = ["setpriv", "--pdeathsig", "TERM", "--", *words]
-    try:
-        process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE, text=True, errors="replace")
-    except OSError as error:
-        return Outcome(-1, f"cannot run '{words[0]}': {error.strerror}", worker=worker.address)
-    said = ""
-    while True:
+    # Not a pipe: that would stay open as long as anything that the command has started runs.
+    with tempfile.TemporaryFile("w+", errors="replace") as said:
         try:
-            said = process.communicate(timeout=INTERVAL)[1]
-            break
-        except subprocess.TimeoutExpired:
-            if not os.path.isdir(folder):  # nobody waits for it
-                process.terminate()
+            process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                       stderr=said, start_new_session=True)
+        except OSError as error:
+            return Outcome(-1, f"cannot run '{words[0]}': {error.strerror}", worker=worker.address)
+        while True:
+            try:
+                process.wait(timeout=INTERVAL)
+                break
+            except subprocess.TimeoutExpired:
+                if not os.path.isdir(folder):  # nobody waits for it
+                    os.killpg(process.pid, signal.SIGTERM)
+        said.seek(0)
+        text = said.read()
     status = process.returncode if process.returncode >= 0 else 128 - process.returncode
-    return _outcome(status, said, place, before, worker.address)
+    return _outcome(status, text, place, before, worker.address)
 
 
 def _bring(existing: pathlib.Path, place: pathlib.Path) -> Optional[Tuple[int, int]]:

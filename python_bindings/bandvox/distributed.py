@@ -266,9 +266,9 @@ def option_words(options: Dict[str, Any]) -> List[str]:
 
 
 def frame_numbers(frames: Union[str, Iterable[int]]) -> List[int]:
-    """The numbers that 7, 1-100 or 1-100x2 stands for, as for --frames."""
+    """The numbers that 7, 1-100 or 1-100x2 stands for, as for --frames; each once."""
     if not isinstance(frames, str):
-        return list(frames)
+        return list(dict.fromkeys(frames))
     found = re.fullmatch(r"(\d+)(?:-(\d+)(?:x(\d+))?)?", frames)
     if not found or int(found[3] or 1) < 1 or int(found[2] or found[1]) < int(found[1]):
         raise ValueError(f"frames is '{frames}'; expected frames as in 7, 1-100 or 1-100x2")

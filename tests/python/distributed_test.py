@@ -143,7 +143,7 @@ def test_the_first_failure_ends_it(client, tmp_path):
     sequence(tmp_path, 6, broken={1})
     with pytest.raises(farm.FarmError, match="frame 1") as caught:
         farm.run_frames(client, "convert", tmp_path / "sim.####.obj", tmp_path / "vol.####.vdb",
-                        range(1, 7), resolution=8, executable=COMMAND)
+                        [1, *range(1, 7)], resolution=8, executable=COMMAND)
     assert len(caught.value.report.failures) == 1
     assert isinstance(caught.value, bandvox.Error)
     assert not [name for name in names_in(tmp_path) if name.startswith(".")]
@@ -215,6 +215,18 @@ def test_tries_come_to_an_end(client, tmp_path):
     assert caught.value.report.tries == 2
 
 
+def test_what_its_workers_die_of_is_given_up(client, tmp_path):
+    script = tmp_path / "deadly"
+    script.write_text('#!/bin/sh\ncase "$*" in *"--shard 1/2"*) kill -9 $PPID ;; esac\nexec sleep 600\n')
+    script.chmod(0o755)
+    with pytest.raises(farm.FarmError, match="shard 1/2") as caught:
+        farm.convert_volume(client, "shape:cube", tmp_path / "cube.vdb", shards=2, retries=1,
+                            resolution=8, executable=str(script))
+    assert caught.value.report.tries == 2
+    assert names_in(tmp_path) == ["deadly"]
+    client.wait_for_workers(2, timeout=60)
+
+
 def test_a_command_that_is_not_there_is_said(client, tmp_path):
     with pytest.raises(farm.FarmError, match="shard ./2"):
         farm.convert_volume(client, "shape:cube", tmp_path / "cube.vdb", shards=2, retries=0,
@@ -229,12 +241,13 @@ def test_an_interruption_ends_the_runs(client, tmp_path):
         wait_for(lambda: pid.exists() and pid.read_text().strip())
         raise KeyboardInterrupt
 
-    # A part that would take minutes, beside one that is done at once.
+    # A part that would take minutes, by a process that it starts, beside one that is done at once.
     script = tmp_path / "slow"
     script.write_text(f"""#!/bin/sh
 case "$*" in *--shard=1/2*|*"--shard 1/2"*) exec {COMMAND} "$@" ;; esac
-echo $$ > {pid}
-exec sleep 600
+sleep 600 &
+echo $! > {pid}
+wait
 """)
     script.chmod(0o755)
     with pytest.raises(KeyboardInterrupt):
