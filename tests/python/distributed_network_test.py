@@ -1,5 +1,5 @@
-"""bandvox.distributed on a scheduler and two workers that see each other through a network alone: each
-is in a network namespace of its own. The workers are of different sizes."""
+"""bandvox.distributed on a scheduler and two workers that see each other through a network alone:
+each is in a network namespace of its own. The workers are of different sizes."""
 
 import contextlib
 import os
@@ -70,7 +70,8 @@ def permitted():
 
 @contextlib.contextmanager
 def started(namespace, module, *words):
-    process = subprocess.Popen(["ip", "netns", "exec", namespace, sys.executable, "-m", module, *words],
+    process = subprocess.Popen(["ip", "netns", "exec", namespace, sys.executable, "-m", module,
+                                *words],
                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     try:
         yield process
@@ -115,7 +116,7 @@ def test_shards_from_two_machines_are_what_one_makes(client, tmp_path):
     assert set(workers_of(report)) == {3, 4} and report.tries == 9
     subprocess.run([COMMAND, "convert", "shape:torus", "-o", tmp_path / "one.vdb", "--resolution",
                     "96", "--quiet"], check=True)
-    (ours,), (theirs,) = bandvox.read_vdb(tmp_path / "torus.vdb"), bandvox.read_vdb(tmp_path / "one.vdb")
+    (ours,), (theirs,) = (bandvox.read_vdb(tmp_path / name) for name in ("torus.vdb", "one.vdb"))
     assert np.array_equal(ours.to_array()[0], theirs.to_array()[0])
     assert ours.to_array()[1] == theirs.to_array()[1]
 

@@ -217,7 +217,8 @@ def test_tries_come_to_an_end(client, tmp_path):
 
 def test_what_its_workers_die_of_is_given_up(client, tmp_path):
     script = tmp_path / "deadly"
-    script.write_text('#!/bin/sh\ncase "$*" in *"--shard 1/2"*) kill -9 $PPID ;; esac\nexec sleep 600\n')
+    script.write_text('#!/bin/sh\ncase "$*" in *"--shard 1/2"*) kill -9 $PPID ;; esac\n'
+                      'exec sleep 600\n')
     script.chmod(0o755)
     with pytest.raises(farm.FarmError, match="shard 1/2") as caught:
         farm.convert_volume(client, "shape:cube", tmp_path / "cube.vdb", shards=2, retries=1,
