@@ -40,7 +40,9 @@ const CommandTable& fitTable() {
             "picture, or the solid under it. With --volume the places are in space, and the "
             "values become grids.",
             {{"POINTS",
-              "A table: .csv .xyz .txt, .npy with a row for each point, or the points of a .ply."}},
+              "A table: .csv .xyz .txt, .npy with a row for each point, or the points of a .ply.",
+              false,
+              {.endings = {".csv", ".xyz", ".txt", ".npy", ".ply"}}}},
             {
                 {"columns", 0, "X,Y,VALUE,...", "x, y and all others",
                  "The columns to take, by name or number from 1; with --volume z comes after y.",

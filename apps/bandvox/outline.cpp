@@ -23,6 +23,11 @@
 #include <vector>
 
 namespace bandvox::app {
+namespace {
+
+const std::vector<std::string> kOutlineKinds{"contour", "boundary", "crease", "intersection"};
+
+}  // namespace
 
 const CommandTable& outlineTable() {
     static const CommandTable table = [] {
@@ -39,9 +44,16 @@ const CommandTable& outlineTable() {
             {{"SURFACES",
               "Newell's .bpt, or .obj with free-form surfaces (cstype bezier or bspline); several "
               "files are one scene.",
-              true}},
+              true,
+              {.endings = {".bpt", ".obj"}}}},
             {
-                {"output", 'o', "FILE", "", "The .svg, .pdf or .eps file to write. Needed.", page},
+                {"output",
+                 'o',
+                 "FILE",
+                 "",
+                 "The .svg, .pdf or .eps file to write. Needed.",
+                 page,
+                 {.endings = {".svg", ".pdf", ".eps"}}},
                 {"page", 0, "SIZE",
                  formatNumber(options.width) + "x" + formatNumber(options.height),
                  "WxH in millimetres, or A3, A4, A5, letter, upright, or with -landscape.", page},
@@ -52,8 +64,13 @@ const CommandTable& outlineTable() {
                 {"crease-angle", 0, "DEG", formatNumber(options.creaseAngle),
                  "Patches that meet at more than this are drawn with a line between, 0 to 180.",
                  lines},
-                {"kinds", 0, "LIST", "contour,boundary,crease,intersection", "Which to draw.",
-                 lines},
+                {"kinds",
+                 0,
+                 "LIST",
+                 joined(kOutlineKinds, ","),
+                 "Which to draw.",
+                 lines,
+                 {.words = kOutlineKinds, .isList = true}},
                 {"no-hidden", 0, "", "", "Leave hidden lines away.", lines},
                 {"stroke", 0, "MM", formatNumber(stroke.width), "Width of visible lines.", lines},
                 {"stroke-color", 0, "COLOR", stroke.color,
@@ -78,7 +95,6 @@ const CommandTable& outlineTable() {
 
 namespace {
 
-const std::vector<std::string> kOutlineKinds{"contour", "boundary", "crease", "intersection"};
 constexpr Range kSomeLength{.low = 0, .high = 1e5, .lowOpen = true};
 
 struct OutlineRequest {

@@ -1,5 +1,6 @@
 #include "solid_input.h"
 
+#include "file_endings.h"
 #include "words.h"
 
 #include <bandvox/core/memory.h>
@@ -73,7 +74,10 @@ std::string meshOrShape() {
 }  // namespace
 
 PositionalEntry solidInputEntry() {
-    return {"INPUT", "A " + meshOrShape() + "."};
+    return {"INPUT",
+            "A " + meshOrShape() + ".",
+            false,
+            {.words = shapeWords(), .endings = meshExtensions()}};
 }
 
 bool isPatchFile(const std::string& input) {
