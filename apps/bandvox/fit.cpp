@@ -171,12 +171,18 @@ void sayFit(CommandRun& run, const SurfaceFit& fit) {
 
 // What the surface does between the points is not what they say if they are noisy or far apart.
 void judgeShape(CommandRun& run, const FitRequest& request, const SurfaceFit& fit) {
-    constexpr double kFar = 0.5;
+    constexpr double kFar = 0.5, kTooFar = 1;
     if (fit.swing > kFar) {
-        run.say("         it goes beyond the values by " + formatNumber(fit.swing, 2) +
-                " of their range: noisy values need --smooth, and points far apart a --tension "
-                "of more than " +
-                formatNumber(fit.tension, 3));
+        std::string message = "it goes beyond the values by " + formatNumber(fit.swing, 2);
+        message +=
+            " of their range: noisy values need --smooth, and points far apart a --tension of "
+            "more than ";
+        message += formatNumber(fit.tension, 3);
+        if (fit.swing > kTooFar) {
+            run.warn({"the surface: " + message}, ErrorKind::Result);
+        } else {
+            run.say("         " + message);
+        }
     }
     constexpr double kNearly = 0.1;
     if (request.fit.noise > 0 && !(std::abs(fit.noiseLeft - 1) <= kNearly)) {

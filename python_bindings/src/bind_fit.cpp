@@ -24,6 +24,12 @@ namespace {
 
 /// What the user asked for has to be there; what holds otherwise is worth a warning.
 void judge(const SurfaceFit& fit, const FitSurfaceOptions& options, bool hasTolerance) {
+    constexpr double kTooFar = 1;
+    if (fit.swing > kTooFar) {
+        std::string message = "the surface goes beyond the values by " + inDigits(fit.swing);
+        message += " of their range: noisy values need smooth, and points far apart a tension of ";
+        warn({message + "more than " + inDigits(fit.tension)});
+    }
     if (options.noise > 0) {
         constexpr double kNearly = 0.1;
         if (std::abs(fit.noiseLeft - 1) <= kNearly) return;

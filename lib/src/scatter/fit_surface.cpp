@@ -333,6 +333,33 @@ SurfaceFit Fitting::run() {
     return std::move(mFit);
 }
 
+/// What the sum of all levels lacks of the values: with the rounding of its control points, which
+/// the levels one by one do not have.
+void measureSum(const UnitPoints& unit, const ScatteredPoints& points, SurfaceFit& fit) {
+    const BsplineSurface sum = fit.sum();
+    FitLevel& last = fit.report.back();
+    last.largest = 0;
+    double squares = 0;
+    std::vector<double> lacking(points.size());
+    for (int c = 0; c < points.columns; ++c) {
+        const double range = unit.range[static_cast<std::size_t>(c)];
+        constexpr std::size_t kPointsInPiece = 4096;
+        forPieces(lacking.size(), kPointsInPiece, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                // In the order in which neighbours are close in memory.
+                const std::size_t k = unit.points.origin[i];
+                const double found = sum.value(points.x[k], points.y[k], c);
+                lacking[i] = (points.value(k, c) - found) / range;
+            }
+        });
+        for (const double part : lacking) {
+            if (!(std::abs(part) <= last.largest)) last.largest = std::abs(part);
+        }
+        squares += dotProduct(lacking, lacking);
+    }
+    last.rms = std::sqrt(squares / static_cast<double>(lacking.size() * unit.range.size()));
+}
+
 }  // namespace
 
 BsplineSurface SurfaceFit::sum(std::size_t first, std::size_t last) const {
@@ -365,6 +392,7 @@ SurfaceFit fitSurface(const ScatteredPoints& points, const FitSurfaceOptions& op
     const auto fitWith = [&](const FitSurfaceOptions& chosen) {
         SurfaceFit fit = Fitting(unit, chosen, progress).run();
         fit.swing = swingOf(fit.levels, merged.points);
+        measureSum(unit, merged.points, fit);
         return fit;
     };
     SurfaceFit fit = fitWith(options);

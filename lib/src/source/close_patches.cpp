@@ -1,12 +1,15 @@
 #include "source/close_patches.h"
 
 #include "core/words.h"
+#include "source/free_form_patch.h"
 
 #include <bandvox/core/error.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace bandvox {
 namespace {
@@ -114,11 +117,15 @@ void standOnBase(std::vector<BezierPatch>& patches, JoinedPatches& joined, doubl
         for (const auto& p : patch.control) lowest = std::min(lowest, p[2] / p[3]);
     }
     if (!(lowest > base)) {
-        throw Error(ErrorKind::Usage,
-                    "the base at " + inFull(base) +
-                        " is not below all control points of the surface, the lowest of which is "
-                        "at " +
-                        inFull(lowest) + "; expected a lower one");
+        // The surface may not go down as far as its control points.
+        const std::vector<FreeFormPatch> surface(patches.begin(), patches.end());
+        constexpr double kNear = 1e-9;
+        lowest = tightBounds(surface, kNear * std::max(1.0, std::abs(base))).min()[2];
+    }
+    if (!(lowest > base)) {
+        throw Error(ErrorKind::Usage, "the base at " + inFull(base) +
+                                          " is not below the surface, which goes down to " +
+                                          inFull(lowest) + "; expected a lower one");
     }
     Vec3d center = holeOf(loops[0]).center;
     center[2] = base;

@@ -35,8 +35,10 @@ struct FitSurfaceOptions {
 struct FitLevel {
     int level = 0;               ///< 2^level cells along the longer side
     std::array<int, 2> cells{};  ///< along x and y
-    double largest = 0;          ///< of the differences at the points, in parts of the range
-    double rms = 0;              ///< their root mean square, the same
+    /// Of the differences at the points that this level and those before leave, in parts of the
+    /// range; of the last level those of the sum, with its rounding.
+    double largest = 0;
+    double rms = 0;  ///< their root mean square, the same
 };
 
 /// A surface as the sum of surfaces from coarse to fine.
