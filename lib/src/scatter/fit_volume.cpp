@@ -8,7 +8,9 @@
 #include <bandvox/core/memory.h>
 #include <bandvox/scatter/fit_volume.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <utility>
 
@@ -66,7 +68,8 @@ class VolumeFitting {
     const FitVolumeOptions& mOptions;
     Progress& mProgress;
     SpaceNets mNets;
-    SpaceColumns mControl;  // of the present level
+    SpaceColumns mControl;     // of the present level
+    std::size_t mNumbers = 0;  // of the control points of the net in reach of all points
     double mLargest = 1, mRms = 1;
     double mSmall = kSmallInSpace;  // what nets may leave to bumps
     VolumeFit mFit;
@@ -110,6 +113,7 @@ void VolumeFitting::makeNets(int level) {
     const double vectors = 12 + 2 * static_cast<double>(mValues.size());
     requireMemory(vectors * sizeof(double) * static_cast<double>(net.numbers()),
                   "the control points in reach of the points");
+    mNumbers = net.numbers();
     mNets = makeSpaceNets(std::move(net), level, 1);
 }
 
@@ -251,9 +255,14 @@ void VolumeFitting::takeRest(int level) {
             if (lacks) places.add(mParts.points().cell(i, level));
         }
         places.sort();
+        // Points far from each other take whole blocks of control points each: bumps do it for
+        // less.
+        SpaceNet finest = places.dilated(kReachOfRest, false).controlsOfCells();
+        constexpr std::size_t kMostNumbers = std::size_t(1) << 21U;
+        if (finest.numbers() > std::max(kMostNumbers, mNumbers)) break;
         constexpr int kLevelsBelow = 3;
-        const SpaceNets nets = makeSpaceNets(places.dilated(kReachOfRest, false).controlsOfCells(),
-                                             level, std::max(1, level - kLevelsBelow));
+        const SpaceNets nets =
+            makeSpaceNets(std::move(finest), level, std::max(1, level - kLevelsBelow));
         const SpaceColumns wanted = mLacking;
         const double largest = mLargest, rms = mRms;
         mControl.assign(mValues.size(), std::vector<double>(nets.nets.back().numbers()));
