@@ -1,14 +1,15 @@
-// bandvox outline: free-form surfaces as a drawing of lines.
+// bandvox outline: free-form surfaces, volumes and meshes as a drawing of lines.
 
-#include "command_run.h"
 #include "commands.h"
+#include "command_run.h"
+#include "outline_input.h"
 #include "render_settings.h"
 #include "report_words.h"
 #include "words.h"
 
 #include <bandvox/outline/patches_to_outline.h>
+#include <bandvox/outline/volumes_to_outline.h>
 #include <bandvox/outline/write_outline.h>
-#include <bandvox/source/read_patches.h>
 
 #include <nlohmann/json.hpp>
 
@@ -31,14 +32,15 @@ const CommandTable& outlineTable() {
         const std::string page = "Page", lines = "Lines";
         CommandTable made{
             "outline",
-            "Draw free-form surfaces as lines (.svg, .pdf, .eps).",
+            "Draw free-form surfaces, volumes and meshes as lines (.svg, .pdf, .eps).",
             "Draws the contours, boundaries, creases and intersections of Bézier and B-spline "
-            "surfaces as Bézier curves. They are computed on the surfaces, never on polygons, and "
+            "surfaces as Bézier curves, and the contours of volumes and of meshes, which are made "
+            "volumes first. They are computed on the surfaces, never on polygons, and "
             "what is hidden is found by lines of sight to the surfaces. Visible and hidden lines "
             "are layers of the drawing.",
-            {{"SURFACES",
-              "Newell's .bpt, or .obj with free-form surfaces (cstype bezier or bspline); several "
-              "files are one scene.",
+            {{"INPUT",
+              "Newell's .bpt, or .obj with free-form surfaces (cstype bezier or bspline); a .vdb; "
+              "a mesh or a built-in shape; several of them are one scene.",
               true}},
             {
                 {"output", 'o', "FILE", "", "The .svg, .pdf or .eps file to write. Needed.", page},
@@ -67,10 +69,14 @@ const CommandTable& outlineTable() {
             {
                 {"bandvox outline teapot.bpt -o teapot.svg --up 0,0,1 --from 1,-2,1",
                  "Newell's teapot, hidden lines dashed."},
+                {"bandvox outline bunny.obj -o bunny.svg --resolution 96",
+                 "A mesh; the fewer voxels, the plainer the drawing."},
                 {"bandvox outline hull.obj -o hull.svg --page A4-landscape --camera orthographic",
                  "A parallel view on a page for a printer."},
             }};
-        for (const OptionEntry& entry : cameraEntries()) made.options.push_back(entry);
+        for (const auto& entries : {outlineInputEntries(), cameraEntries()}) {
+            made.options.insert(made.options.end(), entries.begin(), entries.end());
+        }
         return made;
     }();
     return table;
@@ -82,7 +88,7 @@ const std::vector<std::string> kOutlineKinds{"contour", "boundary", "crease", "i
 constexpr Range kSomeLength{.low = 0, .high = 1e5, .lowOpen = true};
 
 struct OutlineRequest {
-    std::vector<std::string> inputs;
+    OutlineInputs inputs;
     std::string output;
     OutlineOptions options;
     StrokeOptions stroke;
@@ -133,7 +139,7 @@ std::string readStyle(const CommandLine& line, const std::string& option, std::s
 
 OutlineRequest parseOutline(const CommandLine& line) {
     OutlineRequest request;
-    request.inputs = line.positionals();
+    request.inputs = readOutlineInputs(line);
     request.output = line.requiredText("output");
     requireExtension(request.output, {".svg", ".pdf", ".eps"});
     OutlineOptions& options = request.options;
@@ -154,23 +160,6 @@ OutlineRequest parseOutline(const CommandLine& line) {
     request.stroke.hiddenColor = readStyle(line, "hidden-color", request.stroke.hiddenColor);
     request.stroke.dash = readStyle(line, "dash", request.stroke.dash);
     return request;
-}
-
-PatchModel readModels(CommandRun& run, const OutlineRequest& request) {
-    PatchModel all;
-    for (const std::string& input : request.inputs) {
-        PatchModel model = readPatches(input, run.progress());
-        run.say("read     " + input + ": " +
-                formatCount(static_cast<std::int64_t>(model.patches.size()), "patch", "patches"));
-        run.warn(model.warnings, ErrorKind::Input);
-        const int shift = static_cast<int>(all.objects.size());
-        for (BezierPatch& patch : model.patches) {
-            patch.object += shift;
-            all.patches.push_back(std::move(patch));
-        }
-        all.objects.insert(all.objects.end(), model.objects.begin(), model.objects.end());
-    }
-    return all;
 }
 
 void sayOutline(CommandRun& run, const Outline& outline) {
@@ -198,11 +187,14 @@ void runOutline(const CommandLine& line) {
     const OutlineRequest request = parseOutline(line);
     CommandRun run(line);
     AtomicFile output(request.output);
-    const PatchModel model = readModels(run, request);
+    const OutlineScene scene = loadOutlineScene(run, request.inputs);
     Outline outline;
     {
         const ProgressStage stage(run.progress(), "drawing", 0);
-        outline = patchesToOutline(model, request.options, run.progress());
+        outline = scene.volumes.empty()
+                      ? patchesToOutline(scene.patches, request.options, run.progress())
+                      : volumesToOutline(scene.volumes, scene.patches, request.options,
+                                         run.progress());
     }
     std::erase_if(outline.paths, [&](const OutlinePath& path) {
         return !request.kinds[static_cast<std::size_t>(path.kind)];

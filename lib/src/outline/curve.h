@@ -11,12 +11,15 @@ namespace bandvox {
 
 /// What keeps a curve's points on it between two known ones.
 enum class CurveRule {
-    Fold,    ///< F = 0 on the patch
-    Border,  ///< a straight line of the patch's parameters
-    Meeting  ///< in two patches
+    Fold,     ///< F = 0 on the patch
+    Border,   ///< a straight line of the patch's parameters
+    Meeting,  ///< in two patches
+    Volume    ///< two functions of a volume
 };
 
-/// A point of a curve on patches, where the view sees it.
+/// A point of a curve on patches, where the view sees it. Of a curve in a volume `patch` is the
+/// number of that, (u, v, s) the place in index coordinates, and `other` the number of the curve's
+/// equations.
 struct CurvePoint {
     double x = 0, y = 0, z = 0;  ///< on the page, and depth
     double tx = 1, ty = 0;       ///< direction of the curve on the page, length 1, without a sign

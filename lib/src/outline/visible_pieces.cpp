@@ -1,20 +1,15 @@
 #include "outline/visible_pieces.h"
 
 #include "outline/crossings.h"
-#include "outline/refine_point.h"
 
 #include <bandvox/core/parallel.h>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <memory>
 
 namespace bandvox {
 namespace {
-
-// A surface in front has to be nearer by this part of the page's size, since the curve's own
-// surface is met there, too, twice where it folds.
-constexpr double kDepthMargin = 1e-7;
 
 /// A curve by its length.
 class CurveRuler {
@@ -51,9 +46,8 @@ class CurveRuler {
 /// Finds out how much is in front of one curve.
 class CurveSight {
   public:
-    CurveSight(const Curve& curve, std::span<const ViewPatch> patches, const Sheets& sheets,
-               const CurveSampling& sampling)
-        : mCurve(curve), mPatches(patches), mSheets(sheets), mSampling(sampling), mRuler(curve) {}
+    CurveSight(const Curve& curve, const CurveScene& scene, const CurveSampling& sampling)
+        : mCurve(curve), mReader(scene.reader()), mSampling(sampling), mRuler(curve) {}
 
     std::vector<VisiblePiece> cut(const CurvePlaces& places) {
         std::vector<double> stops{0, mRuler.whole()};
@@ -80,12 +74,11 @@ class CurveSight {
         constexpr double kOnPoint = 1e-9;  // of the way
         if (share < kOnPoint) return mCurve.points[i];
         if (share > 1 - kOnPoint) return mCurve.points[i + 1];
-        return pointBetween(mPatches, mCurve.points[i], mCurve.points[i + 1], share);
+        return mReader->between(mCurve.points[i], mCurve.points[i + 1], share);
     }
 
     int hiddenAt(double length) const {
-        const CurvePoint p = pointAt(length);
-        return mSheets.countBefore(p, kDepthMargin * mSampling.size);
+        return mReader->countBefore(pointAt(length));
     }
 
     void examine(double from, double to) {
@@ -192,8 +185,7 @@ class CurveSight {
     }
 
     const Curve& mCurve;
-    std::span<const ViewPatch> mPatches;
-    const Sheets& mSheets;
+    std::unique_ptr<CurveReader> mReader;
     const CurveSampling& mSampling;
     CurveRuler mRuler;
     std::vector<Run> mRuns;
@@ -201,15 +193,14 @@ class CurveSight {
 
 }  // namespace
 
-std::vector<VisiblePiece> visiblePieces(std::span<const Curve> curves,
-                                        std::span<const ViewPatch> patches, const Sheets& sheets,
+std::vector<VisiblePiece> visiblePieces(std::span<const Curve> curves, const CurveScene& scene,
                                         const CurveSampling& sampling, Progress& progress) {
-    const std::vector<CurvePlaces> places = crossings(curves, patches, sampling);
+    const std::vector<CurvePlaces> places = crossings(curves, *scene.reader(), sampling);
     std::vector<std::vector<VisiblePiece>> parts(curves.size());
     parallelFor(static_cast<std::int64_t>(curves.size()), [&](std::int64_t i) {
         progress.throwIfInterrupted();
         const auto k = static_cast<std::size_t>(i);
-        parts[k] = CurveSight(curves[k], patches, sheets, sampling).cut(places[k]);
+        parts[k] = CurveSight(curves[k], scene, sampling).cut(places[k]);
     });
     std::vector<VisiblePiece> result;
     for (auto& some : parts) {
