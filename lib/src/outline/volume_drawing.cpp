@@ -1,0 +1,86 @@
+#include "outline/volume_drawing.h"
+
+#include "outline/contour_places.h"
+#include "outline/draw_curves.h"
+#include "outline/march_curves.h"
+#include "outline/page_view.h"
+#include "outline/surface_curves.h"
+#include "render/picture_request.h"
+
+#include <bandvox/core/error.h>
+
+#include <utility>
+
+namespace bandvox {
+namespace {
+
+using openvdb::Vec3d;
+
+// A density is read to single precision at best, a patch exactly: so that nothing is seen edge-on
+// it has to be turned by more. At the edge of the page lines move by as much of half of its size.
+constexpr double kTurnOfVolumes = 3e-5;
+
+// Of what is read between the nodes.
+constexpr double kReadingTolerance = 2e-5;
+
+std::vector<std::unique_ptr<SurfaceObject>> objectsOf(const std::vector<OutlineVolume>& volumes) {
+    PictureOptions picture;
+    picture.tolerance = kReadingTolerance;
+    std::vector<std::unique_ptr<SurfaceObject>> objects;
+    for (const OutlineVolume& volume : volumes) {
+        SceneObject object;
+        object.grid = volume.grid;
+        object.iso = volume.iso;
+        objects.push_back(std::make_unique<SurfaceObject>(object, picture));
+        if (objects.back()->empty()) {
+            throw Error(ErrorKind::Result, objects.back()->whyEmpty());
+        }
+    }
+    return objects;
+}
+
+void addContent(PageContent& content, const openvdb::FloatGrid& grid) {
+    const std::vector<Vec3d> points = activePoints(grid);
+    content.framed.insert(content.framed.end(), points.begin(), points.end());
+    for (const Vec3d& p : points) content.enclosing.push_back({p[0], p[1], p[2], 1});
+}
+
+VolumeSurface surfaceOf(const SurfaceObject& object, const ViewMatrix& view, int index) {
+    const openvdb::CoordBBox box = object.grid().evalActiveVoxelBoundingBox();
+    const Vec3d middle = 0.5 * (box.min().asVec3d() + box.max().asVec3d());
+    const auto toWorld = object.grid().transform().baseMap()->getAffineMap()->getMat4();
+    return {&object, VolumeView(view, toWorld, middle), index, middle,
+            box.extents().asVec3d().length()};
+}
+
+}  // namespace
+
+VolumeDrawing::VolumeDrawing(const std::vector<OutlineVolume>& volumes, const PatchModel& patches,
+                             const OutlineOptions& options, Progress& progress)
+    : mObjects(objectsOf(volumes)) {
+    PageContent content = contentOf(patches.patches);
+    for (const auto& object : mObjects) addContent(content, object->grid());
+    if (content.framed.empty()) {
+        throw Error(ErrorKind::Result, "the drawing is empty: there are no surfaces");
+    }
+    const CurveSampling sampling = samplingFor(options);
+    const ViewMatrix view = pageView(content, options, kTurnOfVolumes);
+    mPatches = seenBy(view, patches.patches, sampling.size);
+    mCurves = surfaceCurves(patches.patches, mPatches, options, sampling, progress);
+    for (const auto& object : mObjects) {
+        mSurfaces.push_back(surfaceOf(*object, view, static_cast<int>(mSurfaces.size())));
+    }
+    const auto firstObject = static_cast<int>(patches.objects.size());
+    for (const VolumeSurface& surface : mSurfaces) {
+        const std::vector<Vec3d> places = contourPlaces(surface, progress);
+        ContourEquations equations(surface);
+        for (Curve& contour : marchCurves(equations, places, sampling, progress)) {
+            contour.object = firstObject + surface.index;
+            mCurves.push_back(std::move(contour));
+        }
+    }
+    if (!mPatches.empty()) mPatchScene = std::make_unique<PatchScene>(mPatches, sampling.size);
+    mScene = std::make_unique<VolumeScene>(mSurfaces, mPatchScene.get());
+}
+
+}  // namespace bandvox
