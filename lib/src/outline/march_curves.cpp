@@ -161,27 +161,50 @@ class CurveMarch {
         return next;
     }
 
-    Curve curveOf(const Chain& chain, bool isClosed) {
+    // A curve does not begin beside a place where its image turns back.
+    static void turnChain(Chain& chain) {
+        const auto isBack = [&](std::size_t i) { return chain[i].space.turn < 0; };
+        chain.pop_back();
+        for (std::size_t i = 1; i + 1 < chain.size(); ++i) {
+            if (isBack(i - 1) != isBack(i) || isBack(i) != isBack(i + 1)) continue;
+            std::rotate(chain.begin(), chain.begin() + static_cast<std::ptrdiff_t>(i), chain.end());
+            break;
+        }
+        chain.push_back(chain.front());
+    }
+
+    Curve curveOf(Chain& chain, bool isClosed) {
+        // Points this close to where the image turns back, relative to the step, give way.
+        constexpr double kBeside = 0.15;
+        if (isClosed) turnChain(chain);
         Curve curve;
         curve.closed = isClosed;
         curve.points.push_back(chain.front().seen);
         for (std::size_t i = 1; i < chain.size(); ++i) {
-            if ((chain[i - 1].space.turn < 0) != (chain[i].space.turn < 0)) {
-                const auto turn = turnBetween(chain[i - 1], chain[i]);
-                if (turn) curve.points.push_back(*turn);
+            const ChainPoint &a = chain[i - 1], &b = chain[i];
+            bool isBeside = false;
+            if ((a.space.turn < 0) != (b.space.turn < 0)) {
+                double share = 0;
+                if (const auto turn = turnBetween(a, b, share)) {
+                    const bool isFree = i > 1 && !curve.points.back().corner;
+                    if (share < kBeside && isFree) curve.points.pop_back();
+                    curve.points.push_back(*turn);
+                    isBeside = share > 1 - kBeside && i + 1 < chain.size();
+                }
             }
-            curve.points.push_back(chain[i].seen);
+            if (!isBeside) curve.points.push_back(b.seen);
         }
         return curve;
     }
 
     // Where the curve's image turns back, by halving.
-    std::optional<CurvePoint> turnBetween(const ChainPoint& a, const ChainPoint& b) {
+    std::optional<CurvePoint> turnBetween(const ChainPoint& a, const ChainPoint& b,
+                                          double& share) {
         constexpr double kNearEnough = 1e-6;
         double low = 0, high = 1;
         std::optional<SpacePoint> found;
         while (high - low > kNearEnough) {
-            const double share = 0.5 * (low + high);
+            share = 0.5 * (low + high);
             const auto middle = spaceBetween(mEquations, a.space.at, b.space.at, share);
             if (!middle) break;
             found = middle;

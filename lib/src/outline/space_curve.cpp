@@ -11,6 +11,10 @@ using openvdb::Vec3d;
 // Voxels; beyond this, single precision ends.
 constexpr double kExact = 1e-6, kExactEnough = 1e-3;
 
+// What functions are off by where they jump from voxel to voxel, relative to the gradient: voxels,
+// and the angle at which the surface is seen.
+constexpr double kReadPlace = 1e-4, kReadAngle = 1e-4;
+
 // Gradients at a smaller angle than this have no direction across both.
 constexpr double kSmallestSine = 1e-5;
 
@@ -49,7 +53,9 @@ std::optional<SpacePoint> ontoCurve(CurveEquations& equations, const Vec3d& near
         p = equations.at(next);
         before = length;
     }
-    return std::nullopt;
+    const double slope = p.df.length();
+    const bool isGood = std::abs(p.f) < kReadPlace * slope && std::abs(p.g) < kReadAngle * slope;
+    return isGood ? std::optional(p) : std::nullopt;
 }
 
 std::optional<SpacePoint> spaceBetween(CurveEquations& equations, const Vec3d& a, const Vec3d& b,

@@ -20,12 +20,14 @@ using openvdb::Vec3d;
 // it has to be turned by more. At the edge of the page lines move by as much of half of its size.
 constexpr double kTurnOfVolumes = 3e-5;
 
-// Of what is read between the nodes.
-constexpr double kReadingTolerance = 2e-5;
+// Of what is read between the nodes. Beyond it gradients jump from voxel to voxel, and with them
+// contours of what is nearly flat.
+constexpr double kReadingTolerance = 1e-5;
 
 std::vector<std::unique_ptr<SurfaceObject>> objectsOf(const std::vector<OutlineVolume>& volumes) {
     PictureOptions picture;
     picture.tolerance = kReadingTolerance;
+    picture.readsFinely = true;
     std::vector<std::unique_ptr<SurfaceObject>> objects;
     for (const OutlineVolume& volume : volumes) {
         SceneObject object;
