@@ -30,6 +30,10 @@ std::vector<std::unique_ptr<SurfaceObject>> objectsOf(const std::vector<OutlineV
     picture.readsFinely = true;
     std::vector<std::unique_ptr<SurfaceObject>> objects;
     for (const OutlineVolume& volume : volumes) {
+        if (volume.grid && volume.grid->evalActiveVoxelBoundingBox().empty()) {
+            throw Error(ErrorKind::Result, "the drawing is empty: the grid \"" +
+                                               volume.grid->getName() + "\" has no active voxel");
+        }
         SceneObject object;
         object.grid = volume.grid;
         object.iso = volume.iso;
