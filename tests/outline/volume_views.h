@@ -57,7 +57,7 @@ inline bool isHidden(const VolumeSurface& surface, const CurvePoint& point,
 }
 
 /// Compares points of each piece, ten at least if it has them, with lines of sight in small steps;
-/// what is within 0.2 pixels of a piece's ends is left out.
+/// what is within 0.2 pixels of a piece's ends, or of a cusp, is left out.
 inline Findings checkVisibility(const VolumeLines& lines, const InsideMaker& inside,
                                 double rounding) {
     const auto& pieces = lines.drawn.pieces;
@@ -68,13 +68,14 @@ inline Findings checkVisibility(const VolumeLines& lines, const InsideMaker& ins
         const InsideFunction field = inside();
         const auto& points = curve.points;
         const std::size_t every = std::max<std::size_t>(1, points.size() / 40);
-        const double away = curve.closed ? -1 : 0.2 * lines.drawn.pixel;
+        const double away = 0.2 * lines.drawn.pixel;
         for (std::size_t i = 0; i < points.size(); i += every) {
             const CurvePoint& p = points[i];
             const auto isNear = [&](const CurvePoint& q) {
                 return std::hypot(p.x - q.x, p.y - q.y) < away;
             };
-            if (p.corner || isNear(points.front()) || isNear(points.back())) continue;
+            if (!curve.closed && (isNear(points.front()) || isNear(points.back()))) continue;
+            if (isNearCorner(lines.drawn, p, away)) continue;
             const auto& surface =
                 lines.drawing->surfaces()[static_cast<std::size_t>(p.patch)];
             ++result.samples;

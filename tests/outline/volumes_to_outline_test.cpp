@@ -51,13 +51,25 @@ OutlineVolume volumeOf(const openvdb::FloatGrid::Ptr& grid) {
     return {grid, {}, "volume"};
 }
 
+// Beyond the end of a cusp there is no contour, however near: so places around are asked, too.
+double fromContour(const PageCamera& camera, const Place& p, const DistanceFunction& distance) {
+    constexpr double kAside = 0.05 * kPixel;
+    double nearest = camera.fromContour(p, distance);
+    for (int k = 0; k < 8 && nearest > kAside; ++k) {
+        const double angle = 0.25 * std::numbers::pi * k;
+        const Place beside{p[0] + kAside * std::cos(angle), p[1] + kAside * std::sin(angle)};
+        nearest = std::min(nearest, kAside + camera.fromContour(beside, distance));
+    }
+    return nearest;
+}
+
 double farthestFromContour(const Outline& outline, const OutlineOptions& options,
                            const DistanceFunction& distance) {
     const PageCamera camera(options);
     double worst = 0;
     for (const OutlinePath& path : outline.paths) {
         alongPath(path, 6, [&](const Place& p) {
-            worst = std::max(worst, camera.fromContour(p, distance));
+            worst = std::max(worst, fromContour(camera, p, distance));
         });
     }
     return worst;

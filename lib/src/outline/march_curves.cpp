@@ -174,37 +174,55 @@ class CurveMarch {
     }
 
     Curve curveOf(Chain& chain, bool isClosed) {
-        // Points this close to where the image turns back, relative to the step, give way.
-        constexpr double kBeside = 0.15;
         if (isClosed) turnChain(chain);
         Curve curve;
         curve.closed = isClosed;
         curve.points.push_back(chain.front().seen);
         for (std::size_t i = 1; i < chain.size(); ++i) {
-            const ChainPoint &a = chain[i - 1], &b = chain[i];
-            bool isBeside = false;
-            if ((a.space.turn < 0) != (b.space.turn < 0)) {
-                double share = 0;
-                if (const auto turn = turnBetween(a, b, share)) {
-                    const bool isFree = i > 1 && !curve.points.back().corner;
-                    if (share < kBeside && isFree) curve.points.pop_back();
-                    curve.points.push_back(*turn);
-                    isBeside = share > 1 - kBeside && i + 1 < chain.size();
-                }
+            if ((chain[i - 1].space.turn < 0) != (chain[i].space.turn < 0)) {
+                const auto turn = turnBetween(chain[i - 1], chain[i]);
+                if (turn) curve.points.push_back(*turn);
             }
-            if (!isBeside) curve.points.push_back(b.seen);
+            curve.points.push_back(chain[i].seen);
         }
+        clearCorners(curve);
         return curve;
     }
 
+    // Near where the image turns back its two branches are as good as one. A small pair of corners
+    // that nobody can see is none.
+    void clearCorners(Curve& curve) const {
+        const double clear = 0.25 * mSampling.flatness;
+        auto& points = curve.points;
+        std::vector<bool> isLeft(points.size(), true);
+        for (std::size_t c = 1; c + 1 < points.size(); ++c) {
+            if (!points[c].corner || !isLeft[c]) continue;
+            const auto isNear = [&](std::size_t i) {
+                return std::hypot(points[i].x - points[c].x, points[i].y - points[c].y) < clear;
+            };
+            std::size_t begin = c, end = c + 1, corners = 1;
+            while (begin > 1 && isNear(begin - 1) && !points[begin - 1].corner) --begin;
+            for (; end + 1 < points.size() && isNear(end); ++end) {
+                corners += points[end].corner ? 1 : 0;
+            }
+            std::fill(isLeft.begin() + static_cast<std::ptrdiff_t>(begin),
+                      isLeft.begin() + static_cast<std::ptrdiff_t>(end), false);
+            isLeft[c] = corners % 2 == 1;
+        }
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (isLeft[i]) points[kept++] = points[i];
+        }
+        points.resize(kept);
+    }
+
     // Where the curve's image turns back, by halving.
-    std::optional<CurvePoint> turnBetween(const ChainPoint& a, const ChainPoint& b,
-                                          double& share) {
+    std::optional<CurvePoint> turnBetween(const ChainPoint& a, const ChainPoint& b) {
         constexpr double kNearEnough = 1e-6;
         double low = 0, high = 1;
         std::optional<SpacePoint> found;
         while (high - low > kNearEnough) {
-            share = 0.5 * (low + high);
+            const double share = 0.5 * (low + high);
             const auto middle = spaceBetween(mEquations, a.space.at, b.space.at, share);
             if (!middle) break;
             found = middle;
