@@ -95,17 +95,35 @@ class CurveSight {
             where.push_back(to - inward);
         }
         std::sort(where.begin(), where.end());
+        std::vector<int> hidden;
+        for (const double length : where) hidden.push_back(hiddenAt(length));
+        if (isChance(hidden)) return add({from, to, mostFrequent(hidden)});
         double begin = from;
-        int hidden = hiddenAt(where[0]);
         for (std::size_t k = 1; k < where.size(); ++k) {
-            const int next = hiddenAt(where[k]);
-            if (next == hidden) continue;
-            const double change = changeBetween(where[k - 1], where[k], hidden);
-            add({begin, change, hidden});
+            if (hidden[k] == hidden[k - 1]) continue;
+            const double change = changeBetween(where[k - 1], where[k], hidden[k - 1]);
+            add({begin, change, hidden[k - 1]});
             begin = change;
-            hidden = next;
         }
-        add({begin, to, hidden});
+        add({begin, to, hidden.back()});
+    }
+
+    // Where a volume is seen edge-on, and as flat as is known, lines of sight tell now this, now
+    // that.
+    bool isChance(const std::vector<int>& hidden) const {
+        if (mCurve.points[0].rule != CurveRule::Volume) return false;
+        int changes = 0;
+        for (std::size_t k = 1; k < hidden.size(); ++k) changes += hidden[k] != hidden[k - 1];
+        return changes > 1;
+    }
+
+    static int mostFrequent(const std::vector<int>& hidden) {
+        int best = hidden[0];
+        for (const int candidate : hidden) {
+            const auto count = std::count(hidden.begin(), hidden.end(), candidate);
+            if (count > std::count(hidden.begin(), hidden.end(), best)) best = candidate;
+        }
+        return best;
     }
 
     double changeBetween(double low, double high, int hiddenLow) const {

@@ -4,11 +4,13 @@
 #include "outline/draw_curves.h"
 #include "outline/march_curves.h"
 #include "outline/page_view.h"
+#include "outline/slivers.h"
 #include "outline/surface_curves.h"
 #include "render/picture_request.h"
 
 #include <bandvox/core/error.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace bandvox {
@@ -16,13 +18,13 @@ namespace {
 
 using openvdb::Vec3d;
 
-// A density is read to single precision at best, a patch exactly: so that nothing is seen edge-on
-// it has to be turned by more. At the edge of the page lines move by as much of half of its size.
-constexpr double kTurnOfVolumes = 3e-5;
+// A density is known to a millionth or so, a patch exactly: so that nothing is seen edge-on it has
+// to be turned by more. The nearest and the farthest lines move by so much of half of the page.
+constexpr double kTurnOfVolumes = 5e-5;
 
 // Of what is read between the nodes. Beyond it gradients jump from voxel to voxel, and with them
 // contours of what is nearly flat.
-constexpr double kReadingTolerance = 1e-5;
+constexpr double kReadingTolerance = 2e-6;
 
 std::vector<std::unique_ptr<SurfaceObject>> objectsOf(const std::vector<OutlineVolume>& volumes) {
     PictureOptions picture;
@@ -80,7 +82,9 @@ VolumeDrawing::VolumeDrawing(const std::vector<OutlineVolume>& volumes, const Pa
     for (const VolumeSurface& surface : mSurfaces) {
         const std::vector<Vec3d> places = contourPlaces(surface, progress);
         ContourEquations equations(surface);
-        for (Curve& contour : marchCurves(equations, places, sampling, progress)) {
+        const double width = std::max(2 * sampling.flatness, kTurnOfVolumes * sampling.size);
+        std::vector<Curve> contours = marchCurves(equations, places, sampling, progress);
+        for (Curve& contour : withoutSlivers(std::move(contours), width)) {
             contour.object = firstObject + surface.index;
             mCurves.push_back(std::move(contour));
         }
