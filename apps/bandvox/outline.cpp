@@ -54,8 +54,15 @@ const CommandTable& outlineTable() {
                 {"crease-angle", 0, "DEG", formatNumber(options.creaseAngle),
                  "Patches that meet at more than this are drawn with a line between, 0 to 180.",
                  lines},
-                {"kinds", 0, "LIST", "contour,boundary,crease,intersection", "Which to draw.",
+                {"kinds", 0, "LIST", "contour,boundary,crease,intersection,isophote",
+                 "Which to draw.",
                  lines},
+                {"isophotes", 0, "C,...", "none",
+                 "Of volumes: also lines where the cosine of the angle between normal and light is "
+                 "C, as in 0.3,0.7.",
+                 lines},
+                {"light", 0, "X,Y,Z", "-0.4,0.7,0.8",
+                 "Direction to that light, along the camera's right, up and back.", lines},
                 {"no-hidden", 0, "", "", "Leave hidden lines away.", lines},
                 {"stroke", 0, "MM", formatNumber(stroke.width), "Width of visible lines.", lines},
                 {"stroke-color", 0, "COLOR", stroke.color,
@@ -84,7 +91,8 @@ const CommandTable& outlineTable() {
 
 namespace {
 
-const std::vector<std::string> kOutlineKinds{"contour", "boundary", "crease", "intersection"};
+const std::vector<std::string> kOutlineKinds{"contour", "boundary", "crease", "intersection",
+                                             "isophote"};
 constexpr Range kSomeLength{.low = 0, .high = 1e5, .lowOpen = true};
 
 struct OutlineRequest {
@@ -137,6 +145,14 @@ std::string readStyle(const CommandLine& line, const std::string& option, std::s
     return *text;
 }
 
+std::vector<double> readIsophotes(const CommandLine& line) {
+    constexpr std::size_t kMost = 64;
+    return line
+        .numbers("isophotes", 1, kMost, "cosines between -1 and 1, as in 0.3,0.7",
+                 {.low = -1, .high = 1, .lowOpen = true, .highOpen = true})
+        .value_or(std::vector<double>());
+}
+
 OutlineRequest parseOutline(const CommandLine& line) {
     OutlineRequest request;
     request.inputs = readOutlineInputs(line);
@@ -151,6 +167,8 @@ OutlineRequest parseOutline(const CommandLine& line) {
     options.creaseAngle = line.number("crease-angle", {.low = 0, .high = 180}, options.creaseAngle);
     options.camera = readCamera(
         line, (options.height - 2 * options.margin) / (options.width - 2 * options.margin));
+    options.isophotes = readIsophotes(line);
+    options.light = line.vector("light", kAnyPlace).value_or(options.light);
     request.kinds = line.choices("kinds", kOutlineKinds);
     options.hidden = !line.has("no-hidden");
     request.stroke.width = line.number("stroke", kSomeLength, request.stroke.width);

@@ -1,7 +1,6 @@
 #include "outline_input.h"
 
 #include "choose_grid.h"
-#include "density_report.h"
 #include "report_words.h"
 #include "solid_input.h"
 #include "standard_streams.h"
@@ -24,13 +23,22 @@ namespace {
 
 const std::string kDensityName = "density";
 
-enum class InputKind { Patches, Volume, Solid };
-
-InputKind kindOf(const std::string& input) {
-    if (extensionOf(input) == ".vdb") return InputKind::Volume;
-    if (isPatchFile(input)) return InputKind::Patches;
+OutlineInputKind kindOf(const std::string& input) {
+    if (extensionOf(input) == ".vdb") return OutlineInputKind::Volume;
+    if (isPatchFile(input)) return OutlineInputKind::Patches;
     requireMeshOrShape("draw", input);
-    return InputKind::Solid;
+    return OutlineInputKind::Solid;
+}
+
+void requireUse(const CommandLine& line, const std::vector<std::string>& names, bool isUsed,
+                const std::string& what) {
+    for (const std::string& name : names) {
+        if (isUsed || !line.has(name)) continue;
+        std::string message = "option --" + name;
+        message += " is for " + what;
+        message += ", and there is none among the inputs";
+        throw Error(ErrorKind::Usage, message);
+    }
 }
 
 void addPatches(CommandRun& run, const std::string& input, PatchModel& all) {
@@ -69,41 +77,61 @@ openvdb::FloatGrid::ConstPtr makeVolume(CommandRun& run, const std::string& inpu
 std::vector<OptionEntry> outlineInputEntries() {
     const std::string group = "Volumes and meshes";
     const DensityOptions density;
-    return {
+    std::vector<OptionEntry> entries{
         {"grid", 0, "NAME", "density, or the only one of floats", "Which grid of a .vdb to draw.",
          group},
         {"iso", 0, "D", "as stored, else 0.5",
-         "Density that is the surface; of a level set the distance, by default 0.", group},
+         "Density that is the surface, or \"volume\", the one that encloses the volume of the "
+         "source; of a level set the distance, by default 0.",
+         group},
         {"resolution", 'r', "N", std::to_string(density.resolution),
          "Voxels along the longest side of the box of a mesh, of which a band-limited volume is "
          "made: fewer leave small detail away.",
          group},
         {"voxel-size", 0, "S", "", "The same as the side of a voxel, world units.", group},
     };
+    for (OptionEntry entry : filterEntries(density.filter)) {
+        entry.group = group;
+        entries.push_back(std::move(entry));
+    }
+    return entries;
+}
+
+bool OutlineInputs::has(OutlineInputKind kind) const {
+    return std::any_of(files.begin(), files.end(),
+                       [&](const auto& file) { return file.second == kind; });
 }
 
 OutlineInputs readOutlineInputs(const CommandLine& line) {
     OutlineInputs inputs;
-    inputs.files = line.positionals();
+    for (const std::string& file : line.positionals()) inputs.files.emplace_back(file, kindOf(file));
+    const bool hasVolume = inputs.has(OutlineInputKind::Volume);
+    const bool hasSolid = inputs.has(OutlineInputKind::Solid);
+    requireUse(line, {"grid"}, hasVolume, "volumes (.vdb)");
+    requireUse(line, {"resolution", "voxel-size", "cutoff", "order"}, hasSolid,
+               "meshes and built-in shapes");
+    requireUse(line, {"iso", "isophotes", "light"}, hasVolume || hasSolid, "volumes and meshes");
     inputs.grid = line.text("grid");
-    if (line.has("iso")) inputs.iso = line.number("iso", {}, 0);
+    inputs.iso = readIso(line, {});
     readSize(line, inputs.density.resolution, inputs.density.voxelSize);
+    inputs.density.filter = readFilter(line);
     return inputs;
 }
 
 OutlineScene loadOutlineScene(CommandRun& run, const OutlineInputs& inputs) {
     OutlineScene scene;
-    for (const std::string& input : inputs.files) {
-        const InputKind kind = kindOf(input);
-        if (kind == InputKind::Patches) {
+    for (const auto& [input, kind] : inputs.files) {
+        if (kind == OutlineInputKind::Patches) {
             addPatches(run, input, scene.patches);
             continue;
         }
         const std::string name =
             isShape(input) ? input : std::filesystem::path(input).stem().string();
-        scene.volumes.push_back({kind == InputKind::Volume ? readVolume(run, input, inputs)
-                                                           : makeVolume(run, input, inputs),
-                                 inputs.iso, name});
+        OutlineVolume volume{.name = name};
+        volume.grid = kind == OutlineInputKind::Volume ? readVolume(run, input, inputs)
+                                                       : makeVolume(run, input, inputs);
+        volume.iso = isoFor(run, inputs.iso, volume.grid);
+        scene.volumes.push_back(std::move(volume));
     }
     return scene;
 }

@@ -2,6 +2,7 @@
 
 #include "command_line.h"
 #include "command_run.h"
+#include "iso_option.h"
 #include "option_table.h"
 #include "solid_density.h"
 
@@ -10,6 +11,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 // What `outline` draws.
@@ -18,16 +20,21 @@ namespace bandvox::app {
 /// Options about volumes, and about meshes that are made volumes.
 std::vector<OptionEntry> outlineInputEntries();
 
+/// How one input is drawn.
+enum class OutlineInputKind { Patches, Volume, Solid };
+
 /// The inputs of a command line.
 struct OutlineInputs {
-    std::vector<std::string> files;
+    std::vector<std::pair<std::string, OutlineInputKind>> files;
     std::optional<std::string> grid;
-    std::optional<double> iso;
-    DensityOptions density;  ///< of meshes
+    IsoOption iso;
+    DensityOptions density;  ///< of meshes and built-in shapes
+
+    bool has(OutlineInputKind kind) const;
 };
 
 /// Throws Error(ErrorKind::Usage) for values out of range, and for options that none of the inputs
-/// has a use for.
+/// has a use for, Error(ErrorKind::Input) for an input that cannot be drawn.
 OutlineInputs readOutlineInputs(const CommandLine& line);
 
 /// What is drawn together.

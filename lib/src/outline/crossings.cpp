@@ -16,6 +16,11 @@ bool occludes(const Curve& curve) {
     return curve.kind == OutlineKind::Contour || curve.kind == OutlineKind::Boundary;
 }
 
+// A curve that a fold of its surface may pass.
+bool liesOnSurface(const Curve& curve) {
+    return curve.kind == OutlineKind::Intersection || curve.kind == OutlineKind::Isophote;
+}
+
 /// Segments of all curves by the squares of the page that they touch.
 class SegmentGrid {
   public:
@@ -73,7 +78,7 @@ class CrossingSearch {
             }
         }
         for (std::size_t c = 0; c < mCurves.size(); ++c) {
-            if (mCurves[c].kind == OutlineKind::Intersection) passFolds(c);
+            if (liesOnSurface(mCurves[c])) passFolds(c);
             if (mCurves[c].closed || mCurves[c].points.empty()) continue;
             touch(c, mCurves[c].points.front());
             touch(c, mCurves[c].points.back());
@@ -156,7 +161,7 @@ class CrossingSearch {
         return share;
     }
 
-    // Where an intersection goes over a fold of one of its surfaces, by halving.
+    // Where a curve goes over a fold of one of its surfaces, by halving.
     void passFolds(std::size_t curve) {
         const auto& points = mCurves[curve].points;
         for (std::size_t i = 0; i + 1 < points.size(); ++i) {

@@ -37,6 +37,13 @@ void requireValid(const OutlineOptions& options) {
     if (!(options.creaseAngle >= 0 && options.creaseAngle <= 180)) {
         refuseOption("crease angle", options.creaseAngle, "0 to 180 degrees");
     }
+    for (const double cosine : options.isophotes) {
+        if (!(std::abs(cosine) < 1)) refuseOption("isophote", cosine, "between -1 and 1");
+    }
+    const double light = options.light.length();
+    if (!(light > 0) || !std::isfinite(light)) {
+        refuseOption("light's direction's length", light, "above 0");
+    }
     requireValid(options.camera);
 }
 

@@ -82,14 +82,17 @@ PageContent contentOf(const std::vector<BezierPatch>& patches) {
     return content;
 }
 
-ViewMatrix pageView(const PageContent& content, const OutlineOptions& options, double turn) {
+Camera pageCamera(const PageContent& content, const OutlineOptions& options) {
     // The camera's pixels only serve for the shape of the picture.
     const double wide = options.width - 2 * options.margin;
     const double high = options.height - 2 * options.margin;
     const double pixels = 20000 / std::max(wide, high);
-    const Camera camera(options.camera, static_cast<int>(std::ceil(pixels * wide)),
-                        static_cast<int>(std::ceil(pixels * high)), content.framed);
-    ViewMatrix view = viewOf(camera, options);
+    return {options.camera, static_cast<int>(std::ceil(pixels * wide)),
+            static_cast<int>(std::ceil(pixels * high)), content.framed};
+}
+
+ViewMatrix pageView(const PageContent& content, const OutlineOptions& options, double turn) {
+    ViewMatrix view = viewOf(pageCamera(content, options), options);
     settle(view, content, std::max(options.width, options.height), turn);
     return view;
 }

@@ -27,6 +27,9 @@ class CurveEquations {
 
     virtual SpacePoint at(const openvdb::Vec3d& index) = 0;
 
+    /// g alone.
+    virtual double side(const openvdb::Vec3d& index) = 0;
+
     /// A point of the curve as the page sees it.
     virtual CurvePoint seen(const SpacePoint& point) const = 0;
 };

@@ -111,7 +111,7 @@ class CurveSight {
     // Where a volume is seen edge-on, and as flat as is known, lines of sight tell now this, now
     // that.
     bool isChance(const std::vector<int>& hidden) const {
-        if (mCurve.points[0].rule != CurveRule::Volume) return false;
+        if (!isOfVolume(mCurve.points[0].rule)) return false;
         int changes = 0;
         for (std::size_t k = 1; k < hidden.size(); ++k) changes += hidden[k] != hidden[k - 1];
         return changes > 1;

@@ -1,6 +1,6 @@
 #include "outline/volume_drawing.h"
 
-#include "outline/contour_places.h"
+#include "outline/curve_places.h"
 #include "outline/draw_curves.h"
 #include "outline/march_curves.h"
 #include "outline/page_view.h"
@@ -61,6 +61,49 @@ VolumeSurface surfaceOf(const SurfaceObject& object, const ViewMatrix& view, int
             box.extents().asVec3d().length()};
 }
 
+struct CurveRequest {
+    const OutlineOptions& options;
+    Vec3d light;  // world, length 1
+    const CurveSampling& sampling;
+    const std::vector<VolumeSurface>& surfaces;
+};
+
+std::vector<Curve> followed(const VolumeSurface& surface, const EquationsMaker& equations,
+                            const CurveSampling& sampling, Progress& progress) {
+    const std::vector<Vec3d> places = curvePlaces(surface, equations, progress);
+    return marchCurves(*equations(), places, sampling, progress);
+}
+
+// Contours, isophotes, and intersections with the volumes after this one.
+std::vector<Curve> curvesOn(const VolumeSurface& surface, const CurveRequest& request,
+                            Progress& progress) {
+    const CurveSampling& sampling = request.sampling;
+    const double width = std::max(2 * sampling.flatness, kTurnOfVolumes * sampling.size);
+    std::vector<Curve> curves = withoutSlivers(
+        followed(
+            surface, [&] { return std::make_unique<ContourEquations>(surface); }, sampling,
+            progress),
+        width);
+    const auto add = [&](OutlineKind kind, const EquationsMaker& equations) {
+        for (Curve& curve : followed(surface, equations, sampling, progress)) {
+            curve.kind = kind;
+            curves.push_back(std::move(curve));
+        }
+    };
+    for (const double cosine : request.options.isophotes) {
+        add(OutlineKind::Isophote, [&] {
+            return std::make_unique<IsophoteEquations>(surface, request.light, cosine);
+        });
+    }
+    if (!request.options.intersections) return curves;
+    for (const VolumeSurface& other : request.surfaces) {
+        if (other.index <= surface.index) continue;
+        add(OutlineKind::Intersection,
+            [&] { return std::make_unique<MeetingEquations>(surface, other); });
+    }
+    return curves;
+}
+
 }  // namespace
 
 VolumeDrawing::VolumeDrawing(const std::vector<OutlineVolume>& volumes, const PatchModel& patches,
@@ -78,19 +121,19 @@ VolumeDrawing::VolumeDrawing(const std::vector<OutlineVolume>& volumes, const Pa
     for (const auto& object : mObjects) {
         mSurfaces.push_back(surfaceOf(*object, view, static_cast<int>(mSurfaces.size())));
     }
+    const Camera camera = pageCamera(content, options);
+    const Vec3d light = (options.light[0] * camera.right() + options.light[1] * camera.upward() -
+                         options.light[2] * camera.forward())
+                            .unit();
     const auto firstObject = static_cast<int>(patches.objects.size());
     for (const VolumeSurface& surface : mSurfaces) {
-        const std::vector<Vec3d> places = contourPlaces(surface, progress);
-        ContourEquations equations(surface);
-        const double width = std::max(2 * sampling.flatness, kTurnOfVolumes * sampling.size);
-        std::vector<Curve> contours = marchCurves(equations, places, sampling, progress);
-        for (Curve& contour : withoutSlivers(std::move(contours), width)) {
-            contour.object = firstObject + surface.index;
-            mCurves.push_back(std::move(contour));
+        for (Curve& curve : curvesOn(surface, {options, light, sampling, mSurfaces}, progress)) {
+            curve.object = firstObject + surface.index;
+            mCurves.push_back(std::move(curve));
         }
     }
     if (!mPatches.empty()) mPatchScene = std::make_unique<PatchScene>(mPatches, sampling.size);
-    mScene = std::make_unique<VolumeScene>(mSurfaces, mPatchScene.get());
+    mScene = std::make_unique<VolumeScene>(mSurfaces, mPatchScene.get(), light);
 }
 
 }  // namespace bandvox

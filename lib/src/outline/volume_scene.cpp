@@ -1,8 +1,9 @@
 #include "outline/volume_scene.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
+#include <map>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace bandvox {
@@ -16,33 +17,29 @@ class VolumeReader {
     explicit VolumeReader(const VolumeSurface& surface)
         : mSurface(surface), mProbe(surface.object->probe()), mContour(surface) {}
 
-    CurvePoint between(const CurvePoint& a, const CurvePoint& b, double share) {
-        const auto found = spaceBetween(mContour, placeOf(a), placeOf(b), share);
-        CurvePoint point = found ? mContour.seen(*found) : share < 0.5 ? a : b;
-        point.corner = false;
-        return point;
-    }
-
     /// How often the surface is passed before a place of another one.
-    int countBefore(const CurvePoint& point) {
-        return countUpTo(mSurface.view.placeOf({point.x, point.y, point.z}), 0);
-    }
+    int countBefore(const CurvePoint& point) { return countUpTo(placeSeen(point), 0); }
 
     /// The same for a place of its own, which is met, too: what is within half a voxel of it can
     /// only be told by which side of the surface the line of sight comes from.
     int countBeforeOwn(const CurvePoint& point) {
         constexpr double kNear = 0.5;
-        const Vec3d place = placeOf(point);
+        const Vec3d place = placeSeen(point);
         const SpacePoint space = mContour.at(place);
-        const bool comesFromInside = space.turn > 0;
+        const bool isFold = point.rule == CurveRule::VolumeFold;
+        const bool comesFromInside = isFold ? space.turn > 0 : space.g < 0;
         const int count = countUpTo(place, kNear);
         return (count % 2 == 1) == comesFromInside ? count : count + 1;
     }
 
-    double foldAt(const CurvePoint& point) { return mContour.at(placeOf(point)).g; }
+    double foldAt(const CurvePoint& point) { return mContour.side(placeSeen(point)); }
 
   private:
-    static Vec3d placeOf(const CurvePoint& p) { return {p.u, p.v, p.s}; }
+    // Places of the volume's own curves are known exactly.
+    Vec3d placeSeen(const CurvePoint& p) const {
+        if (isOfVolume(p.rule) && p.patch == mSurface.index) return {p.u, p.v, p.s};
+        return mSurface.view.placeOf({p.x, p.y, p.z});
+    }
 
     int countUpTo(const Vec3d& place, double gap) {
         // A place beyond the surface from which to go on.
@@ -71,44 +68,72 @@ class VolumeReader {
 
 class VolumeSceneReader final : public CurveReader {
   public:
-    VolumeSceneReader(std::span<const VolumeSurface> volumes, const CurveScene* patches) {
+    VolumeSceneReader(std::span<const VolumeSurface> volumes, const CurveScene* patches,
+                      const Vec3d& light)
+        : mSurfaces(volumes), mLight(light) {
         mVolumes.reserve(volumes.size());
         for (const VolumeSurface& volume : volumes) mVolumes.emplace_back(volume);
         if (patches != nullptr) mPatches = patches->reader();
     }
 
     CurvePoint between(const CurvePoint& a, const CurvePoint& b, double share) override {
-        if (isOfVolume(a) != isOfVolume(b) || a.patch != b.patch) return share < 0.5 ? a : b;
-        return isOfVolume(a) ? volumeOf(a).between(a, b, share) : mPatches->between(a, b, share);
+        if (!isOfVolume(a.rule) && !isOfVolume(b.rule)) return mPatches->between(a, b, share);
+        CurvePoint point = share < 0.5 ? a : b;
+        if (a.rule == b.rule && a.patch == b.patch) {
+            CurveEquations& equations = equationsOf(a);
+            const auto found =
+                spaceBetween(equations, {a.u, a.v, a.s}, {b.u, b.v, b.s}, share);
+            if (found) point = equations.seen(*found);
+        }
+        point.corner = false;
+        return point;
     }
 
     int countBefore(const CurvePoint& point) override {
         int count = mPatches ? mPatches->countBefore(point) : 0;
         for (std::size_t k = 0; k < mVolumes.size(); ++k) {
-            const bool isOwn = isOfVolume(point) && static_cast<std::size_t>(point.patch) == k;
+            const auto number = static_cast<int>(k);
+            const bool isOwn =
+                isOfVolume(point.rule) && (point.patch == number || point.other == number);
             count += isOwn ? mVolumes[k].countBeforeOwn(point) : mVolumes[k].countBefore(point);
         }
         return count;
     }
 
     double foldAt(const CurvePoint& point, bool isOther) override {
-        return isOfVolume(point) ? volumeOf(point).foldAt(point) : mPatches->foldAt(point, isOther);
+        if (!isOfVolume(point.rule)) return mPatches->foldAt(point, isOther);
+        const int number = isOther && point.other >= 0 ? point.other : point.patch;
+        return mVolumes[static_cast<std::size_t>(number)].foldAt(point);
     }
 
   private:
-    static bool isOfVolume(const CurvePoint& point) { return point.rule == CurveRule::Volume; }
-    VolumeReader& volumeOf(const CurvePoint& p) {
-        return mVolumes[static_cast<std::size_t>(p.patch)];
+    CurveEquations& equationsOf(const CurvePoint& p) {
+        auto& equations = mEquations[{static_cast<int>(p.rule), p.patch, p.other, p.t}];
+        const VolumeSurface& surface = mSurfaces[static_cast<std::size_t>(p.patch)];
+        if (equations) return *equations;
+        if (p.rule == CurveRule::VolumeMeeting) {
+            const VolumeSurface& other = mSurfaces[static_cast<std::size_t>(p.other)];
+            equations = std::make_unique<MeetingEquations>(surface, other);
+        } else if (p.rule == CurveRule::VolumeIsophote) {
+            equations = std::make_unique<IsophoteEquations>(surface, mLight, p.t);
+        } else {
+            equations = std::make_unique<ContourEquations>(surface);
+        }
+        return *equations;
     }
 
+    std::span<const VolumeSurface> mSurfaces;
+    Vec3d mLight;
     std::vector<VolumeReader> mVolumes;
     std::unique_ptr<CurveReader> mPatches;
+    // By rule, volumes and cosine.
+    std::map<std::tuple<int, int, int, double>, std::unique_ptr<CurveEquations>> mEquations;
 };
 
 }  // namespace
 
 std::unique_ptr<CurveReader> VolumeScene::reader() const {
-    return std::make_unique<VolumeSceneReader>(mVolumes, mPatches);
+    return std::make_unique<VolumeSceneReader>(mVolumes, mPatches, mLight);
 }
 
 }  // namespace bandvox

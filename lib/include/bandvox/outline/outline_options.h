@@ -2,6 +2,8 @@
 
 #include <bandvox/render/camera.h>
 
+#include <vector>
+
 namespace bandvox {
 
 /// How surfaces are drawn as lines.
@@ -13,6 +15,11 @@ struct OutlineOptions {
     double creaseAngle = 5;     ///< least angle between normals of a crease, degrees, 0 to 180
     bool intersections = true;  ///< draw where surfaces pass through each other
     bool hidden = true;         ///< keep lines that are behind something
+    /// Of volumes: lines where the cosine of the angle between the normal and the direction to the
+    /// light is one of these, between -1 and 1.
+    std::vector<double> isophotes;
+    /// Direction to the light, along the camera's right, up and back, of any length but 0.
+    openvdb::Vec3d light{-0.4, 0.7, 0.8};
 };
 
 }  // namespace bandvox

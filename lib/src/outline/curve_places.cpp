@@ -1,4 +1,4 @@
-#include "outline/contour_places.h"
+#include "outline/curve_places.h"
 
 #include <bandvox/core/parallel.h>
 
@@ -43,18 +43,17 @@ std::vector<Coord> cubesOf(const SurfaceBlocks& blocks) {
 /// A place on an edge of the lattice where it passes through the surface.
 struct EdgePlace {
     Vec3d at{0, 0, 0};
-    double facing = std::numeric_limits<double>::quiet_NaN();  // ∇f~·v
+    double side = std::numeric_limits<double>::quiet_NaN();  // g there
 };
 
 /// Looks at one cube after another.
 class CubeSearch {
   public:
-    explicit CubeSearch(const VolumeSurface& surface)
-        : mSurface(surface),
-          mIso(surface.object->threshold()),
+    CubeSearch(const VolumeSurface& surface, const EquationsMaker& equations)
+        : mIso(surface.object->threshold()),
           mNodes(surface.object->grid().tree()),
           mProbe(surface.object->probe()),
-          mEquations(surface),
+          mEquations(equations()),
           mEdges(3 * mValues.size()) {}
 
     void search(const Coord& cube, std::vector<Vec3d>& places) {
@@ -99,31 +98,30 @@ class CubeSearch {
 
     const EdgePlace& placeOn(const Coord& node, int axis) {
         EdgePlace& edge = mEdges[3 * nodeIndex(node) + static_cast<std::size_t>(axis)];
-        if (!std::isnan(edge.facing)) return edge;
+        if (!std::isnan(edge.side)) return edge;
         Coord end = node;
         ++end[axis];
         const double a = mValues[nodeIndex(node)], b = mValues[nodeIndex(end)];
         edge.at = (mCube + node).asVec3d();
         const double begin = edge.at[axis];
         edge.at[axis] = begin + a / (a - b);
-        // One step of Newton's method is enough to tell on which side of the contour it is.
+        // One step of Newton's method is enough to tell on which side of the curve it is.
         const DensityAt first = mProbe->evaluate(edge.at);
         const double slope = first.gradient[axis];
         if (slope != 0) {
             const double move = (mIso - first.value) / slope;
             edge.at[axis] = std::clamp(edge.at[axis] + move, begin, begin + 1);
         }
-        const Vec3d gradient = mProbe->evaluate(edge.at).gradient;
-        edge.facing = gradient.dot(mSurface.view.sight(edge.at));
-        if (std::isnan(edge.facing)) edge.facing = 0;
+        edge.side = mEquations->side(edge.at);
+        if (std::isnan(edge.side)) edge.side = 0;
         return edge;
     }
 
-    // A place on the contour near a cell that it goes through.
+    // A place on a curve near a cell that it goes through.
     std::optional<Vec3d> placeIn(const Coord& cell) {
         std::array<const EdgePlace*, 12> edges{};
         std::size_t count = 0;
-        bool isFacing = false, isTurned = false;
+        bool isAbove = false, isBelow = false;
         for (int axis = 0; axis < 3; ++axis) {
             for (int n = 0; n < 4; ++n) {
                 Coord node = cell;
@@ -133,41 +131,41 @@ class CubeSearch {
                 ++end[axis];
                 if ((mValues[nodeIndex(node)] >= 0) == (mValues[nodeIndex(end)] >= 0)) continue;
                 const EdgePlace& edge = placeOn(node, axis);
-                (edge.facing >= 0 ? isFacing : isTurned) = true;
+                (edge.side >= 0 ? isAbove : isBelow) = true;
                 edges[count++] = &edge;
             }
         }
-        if (!isFacing || !isTurned) return std::nullopt;
+        if (!isAbove || !isBelow) return std::nullopt;
         return placeBetween({edges.data(), count}, (mCube + cell).asVec3d() + Vec3d(0.5));
     }
 
     std::optional<Vec3d> placeBetween(std::span<const EdgePlace* const> edges,
                                       const Vec3d& middle) {
-        const EdgePlace *facing = nullptr, *turned = nullptr;
+        const EdgePlace *above = nullptr, *below = nullptr;
         double nearest = std::numeric_limits<double>::infinity();
         for (const EdgePlace* a : edges) {
             for (const EdgePlace* b : edges) {
-                if (!(a->facing >= 0 && b->facing < 0)) continue;
+                if (!(a->side >= 0 && b->side < 0)) continue;
                 const double apart = (a->at - b->at).length();
                 if (apart >= nearest) continue;
                 nearest = apart;
-                facing = a;
-                turned = b;
+                above = a;
+                below = b;
             }
         }
-        const double share = facing->facing / (facing->facing - turned->facing);
-        const Vec3d guess = facing->at + share * (turned->at - facing->at);
+        const double share = above->side / (above->side - below->side);
+        const Vec3d guess = above->at + share * (below->at - above->at);
         constexpr double kReach = 1.5;
-        auto found = ontoCurve(mEquations, guess, kReach);
-        if (!found) found = halve(*facing, *turned);
+        auto found = ontoCurve(*mEquations, guess, kReach);
+        if (!found) found = halve(*above, *below);
         if (!found || (found->at - middle).length() > kReach) return std::nullopt;
         return found->at;
     }
 
     // From both sides along the surface.
-    std::optional<SpacePoint> halve(const EdgePlace& facing, const EdgePlace& turned) {
+    std::optional<SpacePoint> halve(const EdgePlace& above, const EdgePlace& below) {
         constexpr int kHalvings = 12;
-        Vec3d a = facing.at, b = turned.at;
+        Vec3d a = above.at, b = below.at;
         for (int n = 0; n < kHalvings; ++n) {
             Vec3d middle = 0.5 * (a + b);
             for (int step = 0; step < 3; ++step) {
@@ -177,18 +175,15 @@ class CubeSearch {
                 middle += (mIso - density.value) / square * density.gradient;
             }
             if (!((middle - a).length() < 2)) return std::nullopt;
-            const double turn = mProbe->evaluate(middle).gradient.dot(
-                mSurface.view.sight(middle));
-            (turn >= 0 ? a : b) = middle;
+            (mEquations->side(middle) >= 0 ? a : b) = middle;
         }
-        return ontoCurve(mEquations, 0.5 * (a + b), 0.1);
+        return ontoCurve(*mEquations, 0.5 * (a + b), 0.1);
     }
 
-    const VolumeSurface& mSurface;
     double mIso;
     openvdb::tree::ValueAccessor<const openvdb::FloatTree, false> mNodes;
     std::unique_ptr<DensityProbe> mProbe;
-    ContourEquations mEquations;
+    std::unique_ptr<CurveEquations> mEquations;
     Coord mCube;
     std::array<double, static_cast<std::size_t>(kNodes* kNodes* kNodes)> mValues{};
     std::vector<EdgePlace> mEdges;
@@ -196,13 +191,14 @@ class CubeSearch {
 
 }  // namespace
 
-std::vector<Vec3d> contourPlaces(const VolumeSurface& surface, Progress& progress) {
+std::vector<Vec3d> curvePlaces(const VolumeSurface& surface, const EquationsMaker& equations,
+                               Progress& progress) {
     constexpr std::size_t kCubesPerTask = 64;
     const std::vector<Coord> cubes = cubesOf(surface.object->blocks());
     std::vector<std::vector<Vec3d>> parts((cubes.size() + kCubesPerTask - 1) / kCubesPerTask);
     parallelFor(static_cast<std::int64_t>(parts.size()), [&](std::int64_t task) {
         progress.throwIfInterrupted();
-        CubeSearch search(surface);
+        CubeSearch search(surface, equations);
         const std::size_t begin = static_cast<std::size_t>(task) * kCubesPerTask;
         const std::size_t end = std::min(begin + kCubesPerTask, cubes.size());
         for (std::size_t i = begin; i < end; ++i) {
