@@ -9,6 +9,7 @@
 #include "words.h"
 
 #include <bandvox/core/error.h>
+#include <bandvox/source/read_mesh.h>
 #include <bandvox/source/read_patches.h>
 #include <bandvox/source/shapes.h>
 
@@ -26,8 +27,12 @@ const std::string kDensityName = "density";
 OutlineInputKind kindOf(const std::string& input) {
     if (extensionOf(input) == ".vdb") return OutlineInputKind::Volume;
     if (isPatchFile(input)) return OutlineInputKind::Patches;
-    requireMeshOrShape("draw", input);
-    return OutlineInputKind::Solid;
+    if (isShape(input) || isMeshFile(input)) return OutlineInputKind::Solid;
+    throw Error(ErrorKind::Input, "cannot draw '" + input +
+                                      "', by its name; expected a .vdb, free-form surfaces (.bpt, "
+                                      ".obj), a mesh (" +
+                                      joined(meshExtensions(), " ") +
+                                      ") or a built-in shape (shape:torus)");
 }
 
 void requireUse(const CommandLine& line, const std::vector<std::string>& names, bool isUsed,

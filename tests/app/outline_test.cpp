@@ -228,9 +228,9 @@ TEST(Outline, RefusesBrokenFiles) {
         {"a.obj", replaced(kCylinder, "rat bezier", "cardinal"), "cardinal"},
         {"a.obj", replaced(kCylinder, "parm u 0 1", "parm u 1 0"), "descends"},
         {"a.obj", replaced(kCylinder, "parm u 0 1", "trim 0 1 1"), "trims"},
-        {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "only faces"},
+        {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "the mesh is flat", 4},
         {"a.obj", "surf 0 1 0 1 1 2 3 4\n", "line 1"},
-        {"a.txt", kFlatPatch, "expected .bpt or .obj"},
+        {"a.txt", kFlatPatch, "expected a .vdb, free-form surfaces (.bpt, .obj), a mesh"},
     };
     for (const Broken& broken : all) {
         const TemporaryFolder folder;

@@ -71,7 +71,7 @@ TEST(MeetingEquations, LeaveNoEndWithoutAReason) {
         for (const bool isPerspective : {false, true}) {
             const VolumeLines lines = linesOf(twoBalls(), fixedView(from, isPerspective));
             const Findings ends = checkEnds(lines.drawn);
-            const Findings sight = checkVisibility(lines, inside, 3e-5);
+            const Findings sight = checkVisibility(lines, inside, 3e-6);
             for (const Findings* findings : {&ends, &sight}) {
                 for (const std::string& message : findings->messages) {
                     ADD_FAILURE() << from << ": " << message;
