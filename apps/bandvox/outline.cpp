@@ -1,7 +1,7 @@
 // bandvox outline: free-form surfaces, volumes and meshes as a drawing of lines.
 
-#include "commands.h"
 #include "command_run.h"
+#include "commands.h"
 #include "outline_input.h"
 #include "render_settings.h"
 #include "report_words.h"
@@ -55,8 +55,7 @@ const CommandTable& outlineTable() {
                  "Patches that meet at more than this are drawn with a line between, 0 to 180.",
                  lines},
                 {"kinds", 0, "LIST", "contour,boundary,crease,intersection,isophote",
-                 "Which to draw.",
-                 lines},
+                 "Which to draw.", lines},
                 {"isophotes", 0, "C,...", "none",
                  "Of volumes: also lines where the cosine of the angle between normal and light is "
                  "C, as in 0.3,0.7.",
@@ -209,10 +208,10 @@ void runOutline(const CommandLine& line) {
     Outline outline;
     {
         const ProgressStage stage(run.progress(), "drawing", 0);
-        outline = scene.volumes.empty()
-                      ? patchesToOutline(scene.patches, request.options, run.progress())
-                      : volumesToOutline(scene.volumes, scene.patches, request.options,
-                                         run.progress());
+        outline =
+            scene.volumes.empty()
+                ? patchesToOutline(scene.patches, request.options, run.progress())
+                : volumesToOutline(scene.volumes, scene.patches, request.options, run.progress());
     }
     std::erase_if(outline.paths, [&](const OutlinePath& path) {
         return !request.kinds[static_cast<std::size_t>(path.kind)];

@@ -109,7 +109,8 @@ bool OutlineInputs::has(OutlineInputKind kind) const {
 
 OutlineInputs readOutlineInputs(const CommandLine& line) {
     OutlineInputs inputs;
-    for (const std::string& file : line.positionals()) inputs.files.emplace_back(file, kindOf(file));
+    for (const std::string& file : line.positionals())
+        inputs.files.emplace_back(file, kindOf(file));
     const bool hasVolume = inputs.has(OutlineInputKind::Volume);
     const bool hasSolid = inputs.has(OutlineInputKind::Solid);
     requireUse(line, {"grid"}, hasVolume, "volumes (.vdb)");

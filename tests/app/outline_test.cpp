@@ -143,13 +143,15 @@ TEST(Outline, ReadsFreeFormSurfacesOfObjFiles) {
 
 TEST(Outline, DrawsVolumesMeshesAndShapes) {
     const TemporaryFolder folder;
-    const auto run = [&](const Names& words) { return runBandvox(words, {.folder = folder.path()}); };
+    const auto run = [&](const Names& words) {
+        return runBandvox(words, {.folder = folder.path()});
+    };
     ASSERT_EQ(run({"convert", "shape:torus", "-r", "48", "-o", "torus.vdb"}).status, 0);
     ASSERT_EQ(run({"convert", "shape:torus", "-r", "48", "-o", "torus.obj"}).status, 0);
     const RunResult volume = run({"outline", "torus.vdb", "-o", "volume.svg"});
     ASSERT_EQ(volume.status, 0) << volume.err;
-    ASSERT_EQ(run({"outline", "shape:torus", "-r", "48", "-o", "shape.svg", "--threads", "1"}).status,
-              0);
+    ASSERT_EQ(
+        run({"outline", "shape:torus", "-r", "48", "-o", "shape.svg", "--threads", "1"}).status, 0);
     const auto labelled = [&](const std::string& name, const std::string& label) {
         std::string svg = readText(folder / name);
         const std::string word = "inkscape:label=\"" + label + "\"";
@@ -164,9 +166,8 @@ TEST(Outline, DrawsVolumesMeshesAndShapes) {
     EXPECT_EQ(occurrences(drawn, "class=\"hidden contour\""), 1U);
     const RunResult mesh = run({"outline", "torus.obj", "examples.bpt", "-o", "mesh.svg"});
     EXPECT_EQ(mesh.status, 3);
-    const RunResult mixed =
-        run({"outline", "torus.obj", kTeapotFile, "-r", "48", "--isophotes", "0.2,0.6", "--iso",
-             "volume", "-o", "mixed.pdf"});
+    const RunResult mixed = run({"outline", "torus.obj", kTeapotFile, "-r", "48", "--isophotes",
+                                 "0.2,0.6", "--iso", "volume", "-o", "mixed.pdf"});
     ASSERT_EQ(mixed.status, 0) << mixed.err;
     EXPECT_NE(readText(folder / "mixed.pdf").find("isophote"), std::string::npos);
 }

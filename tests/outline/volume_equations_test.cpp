@@ -29,7 +29,8 @@ std::vector<OutlineVolume> twoBalls() {
         {levelSet([](const Vec3d& p) { return ballDistance(p, kFirst, kRadius); }, plainLattice()),
          {},
          "first"},
-        {levelSet([](const Vec3d& p) { return ballDistance(p, kSecond, kRadius); }, turnedLattice()),
+        {levelSet([](const Vec3d& p) { return ballDistance(p, kSecond, kRadius); },
+                  turnedLattice()),
          {},
          "second"}};
 }
@@ -91,12 +92,11 @@ TEST(IsophoteEquations, AreCirclesOfABall) {
         const auto grid =
             levelSet([](const Vec3d& p) { return ballDistance(p, Vec3d(0.0), 0.9); }, lattice);
         const VolumeLines lines = linesOf({{grid, {}, "ball"}}, options);
-        const Camera camera(options.camera, 100, 100,
-                            openvdb::BBoxd(Vec3d(-1.0), Vec3d(1.0)));
-        const Vec3d light = (options.light[0] * camera.right() +
-                             options.light[1] * camera.upward() -
-                             options.light[2] * camera.forward())
-                                .unit();
+        const Camera camera(options.camera, 100, 100, openvdb::BBoxd(Vec3d(-1.0), Vec3d(1.0)));
+        const Vec3d light =
+            (options.light[0] * camera.right() + options.light[1] * camera.upward() -
+             options.light[2] * camera.forward())
+                .unit();
         std::vector<int> found(3, 0);
         for (const Curve& curve : lines.drawing->curves()) {
             if (curve.kind != OutlineKind::Isophote) continue;
@@ -115,9 +115,9 @@ TEST(IsophoteEquations, AreCirclesOfABall) {
             if (piece.curve.kind != OutlineKind::Isophote || piece.curve.closed) continue;
             for (const CurvePoint* end :
                  {&piece.curve.points.front(), &piece.curve.points.back()}) {
-                const double away = page.fromContour(
-                    {end->x, end->y},
-                    [](const Vec3d& p) { return ballDistance(p, Vec3d(0.0), 0.9); });
+                const double away = page.fromContour({end->x, end->y}, [](const Vec3d& p) {
+                    return ballDistance(p, Vec3d(0.0), 0.9);
+                });
                 EXPECT_LT(away, 0.1 * kPixel);
             }
         }

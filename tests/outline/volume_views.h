@@ -29,8 +29,8 @@ struct VolumeLines {
 inline VolumeLines linesOf(const std::vector<OutlineVolume>& volumes,
                            const OutlineOptions& options) {
     VolumeLines lines;
-    lines.drawing = std::make_unique<VolumeDrawing>(volumes, PatchModel{}, options,
-                                                    silentProgress());
+    lines.drawing =
+        std::make_unique<VolumeDrawing>(volumes, PatchModel{}, options, silentProgress());
     lines.drawn.size = std::max(options.width, options.height);
     lines.drawn.pixel = lines.drawn.size / 1000;
     lines.drawn.pieces = visiblePieces(lines.drawing->curves(), lines.drawing->scene(),
@@ -76,8 +76,7 @@ inline Findings checkVisibility(const VolumeLines& lines, const InsideMaker& ins
             };
             if (!curve.closed && (isNear(points.front()) || isNear(points.back()))) continue;
             if (isNearCorner(lines.drawn, p, away)) continue;
-            const auto& surface =
-                lines.drawing->surfaces()[static_cast<std::size_t>(p.patch)];
+            const auto& surface = lines.drawing->surfaces()[static_cast<std::size_t>(p.patch)];
             ++result.samples;
             if (isHidden(surface, p, field, rounding) == (hidden > 0)) continue;
             ++result.wrong;

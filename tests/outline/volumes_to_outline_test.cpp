@@ -127,7 +127,8 @@ TEST(VolumesToOutline, DrawAllOfATorus) {
         for (const OutlinePath& path : outline.paths) {
             for (std::size_t piece = 0; 3 * piece + 3 < path.points.size(); ++piece) {
                 for (int k = 0; k < 100; ++k) {
-                    drawn.add(onCubic(path, piece, k / 100.0), onCubic(path, piece, (k + 1) / 100.0));
+                    drawn.add(onCubic(path, piece, k / 100.0),
+                              onCubic(path, piece, (k + 1) / 100.0));
                 }
             }
         }
@@ -143,8 +144,8 @@ TEST(VolumesToOutline, FindTheCuspsOfATorus) {
     for (const auto& [elevation, cusps] : {std::pair{0.1, 4}, {0.4, 4}, {0.9, 0}, {1.4, 0}}) {
         for (int k = 0; k < 6; ++k) {
             const double azimuth = 2 * std::numbers::pi * (k + 0.1) / 6;
-            const VolumeLines lines = linesOf(
-                {volumeOf(grid)}, viewFrom(azimuth, elevation, false));
+            const VolumeLines lines =
+                linesOf({volumeOf(grid)}, viewFrom(azimuth, elevation, false));
             EXPECT_EQ(lines.drawing->curves().size(), 2U) << azimuth << ", " << elevation;
             EXPECT_EQ(openCurves(lines), 0);
             EXPECT_EQ(cuspsOf(lines), cusps) << azimuth << ", " << elevation;
@@ -244,9 +245,8 @@ TEST(VolumesToOutline, CloseTheLinesOfASurfaceThatTheDataCutOff) {
 
 TEST(VolumesToOutline, StandBesidePatches) {
     // A ball of patches behind one of a volume.
-    PatchModel patches{mapped(sphere(0.5), {{{1, 0, 0, -0.2}, {0, 1, 0, 0.6}, {0, 0, 1, 0.1}}}),
-                       {"patches"},
-                       {}};
+    PatchModel patches{
+        mapped(sphere(0.5), {{{1, 0, 0, -0.2}, {0, 1, 0, 0.6}, {0, 0, 1, 0.1}}}), {"patches"}, {}};
     const auto grid = levelSet(
         [](const Vec3d& p) { return ballDistance(p, Vec3d(0.3, -0.6, 0), 0.4); }, plainLattice());
     const Outline outline =
@@ -270,8 +270,7 @@ TEST(VolumesToOutline, DoNotDependOnTheNumberOfThreads) {
     std::vector<Outline> results;
     for (const int threads : {1, 3}) {
         const ThreadLimit limit(threads);
-        results.push_back(
-            volumesToOutline({volumeOf(grid)}, {}, viewFrom(0.4, 0.5, true)));
+        results.push_back(volumesToOutline({volumeOf(grid)}, {}, viewFrom(0.4, 0.5, true)));
     }
     ASSERT_EQ(results[0].paths.size(), results[1].paths.size());
     for (std::size_t k = 0; k < results[0].paths.size(); ++k) {

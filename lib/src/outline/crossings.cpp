@@ -168,13 +168,15 @@ class CrossingSearch {
             const CurvePoint &a = points[i], &b = points[i + 1];
             if (a.patch != b.patch || a.other != b.other) continue;
             for (const bool isOther : {false, true}) {
-                if ((mReader.foldAt(a, isOther) >= 0) == (mReader.foldAt(b, isOther) >= 0)) continue;
+                if ((mReader.foldAt(a, isOther) >= 0) == (mReader.foldAt(b, isOther) >= 0))
+                    continue;
                 double low = 0, high = 1;
                 CurvePoint middle = a;
                 while (high - low > 1e-6) {
                     const double share = 0.5 * (low + high);
                     middle = mReader.between(a, b, share);
-                    const bool isLow = (mReader.foldAt(middle, isOther) >= 0) == (mReader.foldAt(a, isOther) >= 0);
+                    const bool isLow =
+                        (mReader.foldAt(middle, isOther) >= 0) == (mReader.foldAt(a, isOther) >= 0);
                     (isLow ? low : high) = share;
                 }
                 mPlaces[curve].push_back(static_cast<double>(i) + low);

@@ -77,8 +77,7 @@ class CubeSearch {
         bool isConstant = true;
         bool isInside = false, isOutside = false;
         for (int n = 0; isConstant && n < 8; ++n) {
-            const Coord at =
-                cube.offsetBy(n / 4 * kCells, n / 2 % 2 * kCells, n % 2 * kCells);
+            const Coord at = cube.offsetBy(n / 4 * kCells, n / 2 % 2 * kCells, n % 2 * kCells);
             isConstant = mNodes.probeConstLeaf(at) == nullptr;
             if (isConstant) (mNodes.getValue(at) >= mIso ? isInside : isOutside) = true;
         }

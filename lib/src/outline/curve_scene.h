@@ -11,7 +11,8 @@ class CurveReader {
   public:
     virtual ~CurveReader() = default;
 
-    /// The exact point of a curve between two that follow each other, at a share of the way, 0 to 1.
+    /// The exact point of a curve between two that follow each other, at a share of the way, 0
+    /// to 1.
     virtual CurvePoint between(const CurvePoint& a, const CurvePoint& b, double share) = 0;
 
     /// How many surfaces the line of sight to a point of a curve meets before it.

@@ -41,7 +41,8 @@ class KnownPieces {
     bool contain(const Vec3d& p) const {
         const openvdb::Coord voxel = voxelOf(p);
         for (int n = 0; n < 27; ++n) {
-            const auto found = mVoxels.find(key(voxel.offsetBy(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1)));
+            const auto found =
+                mVoxels.find(key(voxel.offsetBy(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1)));
             if (found == mVoxels.end()) continue;
             for (const std::uint32_t index : found->second) {
                 const auto& [a, b] = mPieces[index];

@@ -13,8 +13,8 @@ namespace bandvox {
 
 /// What a page is to show.
 struct PageContent {
-    std::vector<openvdb::Vec3d> framed;           ///< fills the page if the view is fitted, world
-    std::vector<std::array<double, 4>> enclosing; ///< all lies within these, homogeneous, w > 0
+    std::vector<openvdb::Vec3d> framed;            ///< fills the page if the view is fitted, world
+    std::vector<std::array<double, 4>> enclosing;  ///< all lies within these, homogeneous, w > 0
 };
 
 /// The content that patches are.

@@ -157,7 +157,8 @@ void straighten(Curve& curve, double width) {
     if (corners < 2) return;
     std::vector<CornerPart> parts = partsOf(curve);
     const std::size_t before = parts.size();
-    while (dropShortest(parts, curve.closed, width)) {}
+    while (dropShortest(parts, curve.closed, width)) {
+    }
     if (parts.size() == before) return;
     curve.points = {parts[0].points[0]};
     for (const CornerPart& part : parts) {

@@ -77,9 +77,7 @@ class CurveSight {
         return mReader->between(mCurve.points[i], mCurve.points[i + 1], share);
     }
 
-    int hiddenAt(double length) const {
-        return mReader->countBefore(pointAt(length));
-    }
+    int hiddenAt(double length) const { return mReader->countBefore(pointAt(length)); }
 
     void examine(double from, double to) {
         const double span = to - from;

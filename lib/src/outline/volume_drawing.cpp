@@ -79,11 +79,11 @@ std::vector<Curve> curvesOn(const VolumeSurface& surface, const CurveRequest& re
                             Progress& progress) {
     const CurveSampling& sampling = request.sampling;
     const double width = std::max(2 * sampling.flatness, kTurnOfVolumes * sampling.size);
-    std::vector<Curve> curves = withoutSlivers(
-        followed(
-            surface, [&] { return std::make_unique<ContourEquations>(surface); }, sampling,
-            progress),
-        width);
+    std::vector<Curve> curves =
+        withoutSlivers(followed(
+                           surface, [&] { return std::make_unique<ContourEquations>(surface); },
+                           sampling, progress),
+                       width);
     const auto add = [&](OutlineKind kind, const EquationsMaker& equations) {
         for (Curve& curve : followed(surface, equations, sampling, progress)) {
             curve.kind = kind;
@@ -91,9 +91,8 @@ std::vector<Curve> curvesOn(const VolumeSurface& surface, const CurveRequest& re
         }
     };
     for (const double cosine : request.options.isophotes) {
-        add(OutlineKind::Isophote, [&] {
-            return std::make_unique<IsophoteEquations>(surface, request.light, cosine);
-        });
+        add(OutlineKind::Isophote,
+            [&] { return std::make_unique<IsophoteEquations>(surface, request.light, cosine); });
     }
     if (!request.options.intersections) return curves;
     for (const VolumeSurface& other : request.surfaces) {

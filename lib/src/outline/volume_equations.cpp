@@ -81,8 +81,7 @@ double MeetingEquations::side(const Vec3d& index) {
 }
 
 CurvePoint MeetingEquations::seen(const SpacePoint& point) const {
-    CurvePoint result =
-        seenAt(mSurface, point.at, point.tangent(), CurveRule::VolumeMeeting);
+    CurvePoint result = seenAt(mSurface, point.at, point.tangent(), CurveRule::VolumeMeeting);
     result.other = mOther.index;
     return result;
 }
@@ -115,8 +114,7 @@ double IsophoteEquations::side(const Vec3d& index) {
 }
 
 CurvePoint IsophoteEquations::seen(const SpacePoint& point) const {
-    CurvePoint result =
-        seenAt(mSurface, point.at, point.tangent(), CurveRule::VolumeIsophote);
+    CurvePoint result = seenAt(mSurface, point.at, point.tangent(), CurveRule::VolumeIsophote);
     result.t = mCosine;
     return result;
 }

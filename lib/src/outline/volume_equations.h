@@ -12,9 +12,9 @@ namespace bandvox {
 struct VolumeSurface {
     const SurfaceObject* object = nullptr;  ///< not empty
     VolumeView view;
-    int index = 0;                     ///< of the volumes of the scene
-    openvdb::Vec3d middle{0, 0, 0};    ///< of what is active, index coordinates
-    double size = 0;                   ///< of that, from corner to corner, voxels
+    int index = 0;                   ///< of the volumes of the scene
+    openvdb::Vec3d middle{0, 0, 0};  ///< of what is active, index coordinates
+    double size = 0;                 ///< of that, from corner to corner, voxels
 };
 
 /// The contour {f~ = d, ∇f~·v = 0}, v along the line of sight: where that touches the surface. Its

@@ -81,8 +81,7 @@ class VolumeSceneReader final : public CurveReader {
         CurvePoint point = share < 0.5 ? a : b;
         if (a.rule == b.rule && a.patch == b.patch) {
             CurveEquations& equations = equationsOf(a);
-            const auto found =
-                spaceBetween(equations, {a.u, a.v, a.s}, {b.u, b.v, b.s}, share);
+            const auto found = spaceBetween(equations, {a.u, a.v, a.s}, {b.u, b.v, b.s}, share);
             if (found) point = equations.seen(*found);
         }
         point.corner = false;
