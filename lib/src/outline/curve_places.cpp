@@ -10,7 +10,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <span>
 
 namespace bandvox {
 namespace {
@@ -68,7 +70,8 @@ class CubeSearch {
 
   private:
     static std::size_t nodeIndex(const Coord& node) {
-        return static_cast<std::size_t>((node[0] * kNodes + node[1]) * kNodes + node[2]);
+        const int index = (node[0] * kNodes + node[1]) * kNodes + node[2];
+        return static_cast<std::size_t>(index);
     }
 
     // The values of a cube; false if all are on one side of the surface.

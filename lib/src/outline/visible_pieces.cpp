@@ -94,6 +94,7 @@ class CurveSight {
         }
         std::sort(where.begin(), where.end());
         std::vector<int> hidden;
+        hidden.reserve(where.size());
         for (const double length : where) hidden.push_back(hiddenAt(length));
         if (isChance(hidden)) return add({from, to, mostFrequent(hidden)});
         double begin = from;
