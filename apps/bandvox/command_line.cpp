@@ -142,6 +142,10 @@ CommandLine CommandLine::withFiles(const std::string& input, const std::string& 
     return changed;
 }
 
+std::size_t CommandLine::choice(const std::string& option, std::size_t fallback) const {
+    return choice(option, findOption(mTable, option)->hint.words, fallback);
+}
+
 std::string CommandLine::requiredText(const std::string& option) const {
     if (const auto given = text(option)) return *given;
     std::string shown = "--" + option;

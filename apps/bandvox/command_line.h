@@ -18,6 +18,10 @@ class CommandLine : public OptionValues {
     /// does. Abbreviated names are unknown.
     CommandLine(const CommandTable& table, const std::vector<std::string>& arguments);
 
+    using OptionValues::choice;
+    /// Which of the words that the table lists was given; `fallback` if the option was not.
+    std::size_t choice(const std::string& option, std::size_t fallback) const;
+
     /// The text given to an option that must be there.
     std::string requiredText(const std::string& option) const;
 

@@ -28,7 +28,7 @@ namespace {
 constexpr int kMostThreads = 4096;
 
 ProgressDisplay displayFor(const CommandLine& line) {
-    const std::size_t choice = line.choice("progress", {"auto", "always", "never"}, 0);
+    const std::size_t choice = line.choice("progress", 0);
     const bool isTerminal = isatty(STDERR_FILENO) != 0;
     // A report is soon made, and who reads it wants no other lines.
     const bool hasOutput = findOption(line.table(), "output") != nullptr;

@@ -4,6 +4,7 @@
 #include "command_run.h"
 #include "commands.h"
 #include "compare_report.h"
+#include "file_endings.h"
 #include "iso_option.h"
 #include "solid_input.h"
 #include "standard_streams.h"
@@ -72,16 +73,24 @@ const CommandTable& compareTable() {
         "lattices values are compared on that of A, where B is read between its voxels. One of "
         "the two, or both, may be a mesh: then surfaces are compared, the mesh's being that of "
         "the solid that convert would make of it.",
-        {{"A", "A .vdb file or a mesh; one of the two may be stdin.vdb, the standard input."},
-         {"B", "What it is compared with."}},
+        {{"A",
+          "A .vdb file or a mesh; one of the two may be stdin.vdb, the standard input.",
+          false,
+          {.endings = vdbAndMeshEndings()}},
+         {"B", "What it is compared with.", false, {.endings = vdbAndMeshEndings()}}},
         {
             {"grid", 0, "NAME", "density", "The grid to take of .vdb files.", "Comparison"},
             {"iso", 0, "D", "stored, or 0.5",
              "Value that is the surface, in both; 0 of level sets. volume: of each that which "
              "encloses the volume of its source.",
              "Comparison"},
-            {"only", 0, "PART", "both", "values or surfaces: compare no more than these.",
-             "Comparison"},
+            {"only",
+             0,
+             "PART",
+             "both",
+             "values or surfaces: compare no more than these.",
+             "Comparison",
+             {.words = {"values", "surfaces"}}},
             {"distance-tolerance", 0, "V", formatNumber(kDistanceTolerance),
              "The largest distance is found to within so many voxels, 1e-4 to 10. Between meshes, "
              "in thousandths of the diagonal of their box.",
@@ -92,11 +101,15 @@ const CommandTable& compareTable() {
              "Comparison"},
             {"fail-above", 0, "E", "",
              "End with status 4 if the metric is above E, after printing all.", "Outcome"},
-            {"metric", 0, "M", "max; hausdorff with a mesh",
+            {"metric",
+             0,
+             "M",
+             "max; hausdorff with a mesh",
              "max or rms (difference of values), hausdorff or mean-distance (world units), volume "
              "or integral (difference in parts of A's), angle (of normals, of which 95 % have "
              "less, degrees).",
-             "Outcome"},
+             "Outcome",
+             {.words = metricNames()}},
             {"json", 0, "", "", "Print JSON instead of words.", "Output"},
         },
         {
@@ -112,8 +125,7 @@ namespace {
 
 Metric readMetric(const CommandLine& line, bool withMesh) {
     const auto standard = withMesh ? Metric::Hausdorff : Metric::Maximum;
-    return static_cast<Metric>(
-        line.choice("metric", metricNames(), static_cast<std::size_t>(standard)));
+    return static_cast<Metric>(line.choice("metric", static_cast<std::size_t>(standard)));
 }
 
 void readFailure(const CommandLine& line, bool withMesh, CompareRequest& request) {
@@ -151,7 +163,7 @@ CompareRequest parseCompare(const CommandLine& line) {
     }
     request.grid = line.text("grid");
     request.iso = readIso(line, {});
-    const std::size_t only = line.choice("only", {"values", "surfaces"}, 2);
+    const std::size_t only = line.choice("only", 2);
     if (only == 0 && withMesh) {
         throw Error(ErrorKind::Usage, "--only values needs two .vdb files; a mesh has no values");
     }

@@ -9,6 +9,7 @@
 #include "convert_settings.h"
 #include "convert_to_array.h"
 #include "convert_volume.h"
+#include "file_endings.h"
 #include "mesh_output.h"
 #include "output_kind.h"
 #include "stack_input.h"
@@ -45,22 +46,30 @@ const CommandTable& convertTable() {
              filter},
             {"tile", 0, "N", "chosen",
              "Side of the cube that is filtered at a time, in voxels, even, at most 512.", filter},
-            {"route", 0, "KIND", "auto",
+            {"route",
+             0,
+             "KIND",
+             "auto",
              "exact: from the surface itself, holes capped. sampled: from samples of a shape's "
              "formula, which alias a little. winding: the places that a mesh's triangles wind "
              "around by more than half, followed along rows. auto: exact, but winding for what "
              "of a mesh caps cannot close.",
-             filter},
+             filter,
+             {.words = {"auto", "exact", "sampled", "winding"}}},
             {"oversample", 0, "P",
              std::to_string(FieldDensityOptions().oversample) + ", winding " +
                  std::to_string(SoupDensityOptions().rowsPerVoxel),
              "Samples along a voxel's side on the sampled route, whose error is measured if "
              "they are even, or rows on that of the winding number, 1 to 64.",
              filter},
-            {"overlap", 0, "KIND", "union",
+            {"overlap",
+             0,
+             "KIND",
+             "union",
              "Where shells of a mesh overlap. union: inside is inside. sum: densities add up, "
              "so that near parts blend into each other.",
-             filter},
+             filter,
+             {.words = {"union", "sum"}}},
             {"base", 0, "Z", "",
              "Of free-form surfaces that are a height field: the solid between them and the plane "
              "z = Z, with walls.",
@@ -104,7 +113,9 @@ const CommandTable& convertTable() {
               "input), an array (.npy, .nrrd, .nhdr, .mha, .mhd), slices (a folder or a pattern "
               "of images, slice.####.tif, or a .tif file with pages), a folder or a file of DICOM, "
               "points (.xyz, .csv, .txt, a .ply without faces), or a built-in shape such as "
-              "shape:torus."}},
+              "shape:torus.",
+              false,
+              {.words = shapeWords(), .endings = convertibleEndings(), .isFolder = true}}},
             options,
             {
                 {"bandvox convert bunny.obj -o bunny.vdb --resolution 512",

@@ -231,9 +231,13 @@ std::vector<OptionEntry> frameEntries() {
          "Leave an output alone that is whole and was made with the same settings, by the same "
          "version, from the same input, as it says itself.",
          group},
-        {"like", 0, "FILE", "",
+        {"like",
+         0,
+         "FILE",
+         "",
          "Use the settings of a .vdb file that convert has written; other options win over it.",
-         group},
+         group,
+         {.endings = {".vdb"}}},
     };
 }
 

@@ -48,7 +48,7 @@ PointRequest parsePoints(const CommandLine& line) {
                    "oversample", "overlap", "color"},
                   "for points");
     readStackRequest(line, request.input);  // refuses
-    request.kind = static_cast<PointKind>(line.choice("points", {"auto", "balls", "surface"}, 0));
+    request.kind = static_cast<PointKind>(line.choice("points", 0));
     if (line.has("radius")) request.radius = line.number("radius", {.low = 0, .lowOpen = true}, 1);
     if (request.radius && request.kind == PointKind::Surface) {
         throw Error(ErrorKind::Usage,
@@ -167,10 +167,14 @@ DensityResult densityOfPoints(CommandRun& run, PointRequest& request) {
 std::vector<OptionEntry> pointEntries() {
     const std::string group = "Points as input";
     return {
-        {"points", 0, "KIND", "auto",
+        {"points",
+         0,
+         "KIND",
+         "auto",
          "balls: the union of balls around the points. surface: the solid whose surface the points "
          "lie on, by their normals. auto: balls if there are radii, else the surface.",
-         group},
+         group,
+         {.words = {"auto", "balls", "surface"}}},
         {"radius", 0, "R", "", "One radius for all points, in units of the file.", group},
     };
 }

@@ -41,8 +41,7 @@ struct ConvertRequest : SolidDensityRequest {
 };
 
 void readRoute(const CommandLine& line, ConvertRequest& request) {
-    request.route =
-        static_cast<Route>(line.choice("route", {"auto", "exact", "sampled", "winding"}, 0));
+    request.route = static_cast<Route>(line.choice("route", 0));
     const bool isExactRoute = request.route == Route::Auto || request.route == Route::Exact;
     if (request.isPatches && !isExactRoute) {
         throw Error(ErrorKind::Usage,
@@ -107,7 +106,7 @@ ConvertRequest parseConvert(const CommandLine& line) {
     DensityOptions& density = request.density;
     readSize(line, density.resolution, density.voxelSize);
     readDensityOptions(line, request.output, density);
-    request.overlap = static_cast<Overlap>(line.choice("overlap", {"union", "sum"}, 0));
+    request.overlap = static_cast<Overlap>(line.choice("overlap", 0));
     density.sumOverlaps = request.overlap == Overlap::Sum;
 
     request.color = line.has("color");

@@ -88,8 +88,13 @@ void requireOwnValues(const fs::path& header, const fs::path& values) {
 std::vector<OptionEntry> arrayOutputEntries() {
     const std::string output = "Output";
     return {
-        {"type", 0, "KIND", "float, of .png uint16",
-         "Of an array or images: " + joined(voxelTypeNames(), ", ") + ".", output},
+        {"type",
+         0,
+         "KIND",
+         "float, of .png uint16",
+         "Of an array or images: " + joined(voxelTypeNames(), ", ") + ".",
+         output,
+         {.words = voxelTypeNames()}},
         {"range", 0, "LO,HI", "0,1 of densities",
          "Of an array or images of whole numbers: the values that become 0 and the largest one. "
          "Values that are no densities stay as they are, rounded.",
@@ -131,8 +136,7 @@ ArrayOutput::ArrayOutput(const CommandLine& line, fs::path path, Kind kind)
     : mPath(std::move(path)), mKind(kind), mInput(line.positional(0)) {
     const bool isPng = isImages() && extensionOf(mPath) == ".png";
     const VoxelType usual = isImages() ? usualImageType(mPath) : VoxelType::Float;
-    mVoxels.type = static_cast<VoxelType>(
-        line.choice("type", voxelTypeNames(), static_cast<std::size_t>(usual)));
+    mVoxels.type = static_cast<VoxelType>(line.choice("type", static_cast<std::size_t>(usual)));
     mVoxels.range = readRange(line);
     mVoxels.box = readBox(line);
     if (isImages()) requireImageType(mPath, mVoxels.type);

@@ -40,7 +40,9 @@ const CommandTable& fitTable() {
             "picture, or the solid under it. With --volume the places are in space, and the "
             "values become grids.",
             {{"POINTS",
-              "A table: .csv .xyz .txt, .npy with a row for each point, or the points of a .ply."}},
+              "A table: .csv .xyz .txt, .npy with a row for each point, or the points of a .ply.",
+              false,
+              {.endings = {".csv", ".xyz", ".txt", ".npy", ".ply"}}}},
             {
                 {"columns", 0, "X,Y,VALUE,...", "x, y and all others",
                  "The columns to take, by name or number from 1; with --volume z comes after y.",
@@ -222,12 +224,13 @@ void runFit(const CommandLine& line) {
     const FitRequest request = parseFit(line);
     CommandRun run(line);
     AtomicFile output(request.output.path);
-    NamedPoints named = readScatteredPoints(request.input, request.columns, run.progress());
-    sayPoints(run, request.input, named);
+    const ScatteredPoints points =
+        readScatteredPoints(request.input, request.columns, run.progress());
+    sayPoints(run, request.input, points);
     SurfaceFit fit;
     {
         const ProgressStage stage(run.progress(), "fitting", 0);
-        fit = fitSurface(named.points, request.fit, run.progress());
+        fit = fitSurface(points, request.fit, run.progress());
     }
     sayFit(run, fit);
     if (request.fit.noise <= 0) {
@@ -238,7 +241,7 @@ void runFit(const CommandLine& line) {
     const BsplineSurface surface = chosenSum(request, fit);
     fit.levels.clear();
     requirePatches(request, surface);
-    writeFit(run, output, request.output, {surface, named.names, request.input});
+    writeFit(run, output, request.output, {surface, points.names, request.input});
 }
 
 }  // namespace bandvox::app

@@ -82,10 +82,14 @@ void writeSolid(CommandRun& run, AtomicFile& output, const FitOutput& request,
     run.writeOutput(output, [&](AtomicFile& file) { writeVdb(file, grids, request.write); });
 }
 
+std::vector<std::string> quantityNames() {
+    std::vector<std::string> names;
+    for (const SurfaceQuantity quantity : surfaceQuantities()) names.push_back(nameOf(quantity));
+    return names;
+}
+
 std::string quantityWords() {
-    std::vector<std::string> words;
-    for (const SurfaceQuantity quantity : surfaceQuantities()) words.push_back(nameOf(quantity));
-    return joined(words, ", ");
+    return joined(quantityNames(), ", ");
 }
 
 std::vector<SurfaceQuantity> readQuantities(const CommandLine& line, FitOutput::Kind kind) {
@@ -123,21 +127,29 @@ FitOutput::Kind kindOf(const std::filesystem::path& path) {
 
 std::vector<OptionEntry> fitOutputEntries() {
     std::vector<OptionEntry> entries{
-        {"output", 'o', "FILE", "",
+        {"output",
+         'o',
+         "FILE",
+         "",
          "What to write: .bpt Bézier patches of the first value, which are the surface exactly; "
          ".npy samples of all values as doubles, [x][y][value]; .exr height as Z, with normals and "
          "positions; .obj .ply .stl .gltf .glb a mesh with normals; .vdb the density of the solid "
          "under the surface. Columns named r, g and b are the colours of meshes and pictures, and "
          "the grid Cd of a .vdb file. Needed.",
-         "Output"},
+         "Output",
+         {.endings = {".bpt", ".npy", ".exr", ".vdb", ".obj", ".ply", ".stl", ".gltf", ".glb"}}},
         {"samples", 0, "N", std::to_string(kStandardSamples),
          "Samples along the longer side of a mesh, a picture or an array, from border to border.",
          "Output"},
-        {"quantities", 0, "LIST", "value",
+        {"quantities",
+         0,
+         "LIST",
+         "value",
          "What an .npy array has of each column, with commas between: " + quantityWords() +
              "; .exr has them of the first as channels besides. With --volume: value, gradient, "
              "which becomes a grid of vectors, as density_gradient.",
-         "Output"},
+         "Output",
+         {.words = quantityNames(), .isList = true}},
         resolutionEntry(DensityOptions().resolution),
         voxelSizeEntry(),
         {"base", 0, "Z", "below the surface", "Where the solid of a .vdb file ends below.",

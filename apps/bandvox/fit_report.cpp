@@ -7,13 +7,15 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
+#include <optional>
+#include <string>
 
 namespace bandvox::app {
 
-void sayPoints(CommandRun& run, const std::string& input, const NamedPoints& named) {
+void sayPoints(CommandRun& run, const std::string& input, const ScatteredPoints& points) {
     run.say("read     " + input + ": " +
-            formatCount(static_cast<std::int64_t>(named.points.size()), "point", "points") +
-            " with " + joined(named.names, ", "));
+            formatCount(static_cast<std::int64_t>(points.size()), "point", "points") + " with " +
+            joined(points.names, ", "));
 }
 
 void sayDuplicates(CommandRun& run, std::size_t points, std::size_t duplicates) {
@@ -26,14 +28,10 @@ void sayDuplicates(CommandRun& run, std::size_t points, std::size_t duplicates) 
 }
 
 void judgeResidual(CommandRun& run, const FitResidual& residual) {
-    if (residual.largest <= residual.expected) return;
-    std::string message = "the " + residual.what + " is off by ";
-    message += formatNumber(residual.largest, 3) + " of the range at a point; expected ";
-    message += formatNumber(residual.expected, 3) + " at most, by --tolerance";
-    // As where a crowd of points and one far away share a net: what is between them is anything.
-    constexpr double kUseless = 0.01;
-    const bool isUseless = !residual.isLimited && !(residual.largest <= kUseless);
-    if (residual.isAsked || isUseless) throw Error(ErrorKind::Result, message);
+    const std::optional<FitFault> fault = faultOf(residual);
+    if (!fault) return;
+    const std::string message = fault->message + ", by --tolerance";
+    if (fault->isError) throw Error(ErrorKind::Result, message);
     run.warn({message}, ErrorKind::Result);
 }
 

@@ -2,6 +2,7 @@
 
 #include "command_run.h"
 
+#include <bandvox/scatter/fit_residual.h>
 #include <bandvox/scatter/read_scattered_points.h>
 
 #include <cstddef>
@@ -10,19 +11,10 @@
 // What `bandvox fit` says of surfaces and of volumes alike.
 namespace bandvox::app {
 
-void sayPoints(CommandRun& run, const std::string& input, const NamedPoints& named);
+void sayPoints(CommandRun& run, const std::string& input, const ScatteredPoints& points);
 
 /// Says and counts how many points there are, and how many were in the place of another.
 void sayDuplicates(CommandRun& run, std::size_t points, std::size_t duplicates);
-
-/// What a fit leaves at the points, and what was asked for.
-struct FitResidual {
-    std::string what;        ///< "surface"
-    double largest = 0;      ///< left, in parts of the range
-    double expected = 0;     ///< the same
-    bool isAsked = false;    ///< --tolerance was given
-    bool isLimited = false;  ///< --max-level was given
-};
 
 /// What the user asked for has to be there; what holds otherwise is worth a warning. Throws
 /// Error(ErrorKind::Result).

@@ -183,16 +183,17 @@ void runFitVolume(const CommandLine& line) {
     const FitVolumeRequest request = parseFitVolume(line);
     CommandRun run(line);
     AtomicFile output(request.output);
-    const NamedPoints named = readScatteredPoints(request.input, request.columns, run.progress());
-    sayPoints(run, request.input, named);
+    const ScatteredPoints points =
+        readScatteredPoints(request.input, request.columns, run.progress());
+    sayPoints(run, request.input, points);
     VolumeFit fit;
     {
         const ProgressStage stage(run.progress(), "fitting", 0);
-        fit = fitVolume(named.points, request.fit, run.progress());
+        fit = fitVolume(points, request.fit, run.progress());
     }
     sayVolumeFit(run, fit);
     judgeVolumeFit(run, request, fit);
-    const openvdb::GridPtrVec grids = sampleVolume(run, request, fit.volume, named.names);
+    const openvdb::GridPtrVec grids = sampleVolume(run, request, fit.volume, points.names);
     run.writeOutput(output, [&](AtomicFile& file) {
         writeVdb(file, {grids.begin(), grids.end()}, request.write);
     });

@@ -2,6 +2,7 @@
 
 #include "command_run.h"
 #include "commands.h"
+#include "file_endings.h"
 #include "grid_report.h"
 #include "mesh_report.h"
 #include "standard_streams.h"
@@ -23,7 +24,10 @@ const CommandTable& infoTable() {
         "its metadata. For a density made by bandvox that includes how it was filtered and the "
         "error that was measured. Of a mesh it tells its holes and whatever else keeps it from "
         "being the boundary of a solid, and the volume of the solid that is made of it.",
-        {{"INPUT", "A .vdb file, or a mesh; stdin.vdb is the standard input."}},
+        {{"INPUT",
+          "A .vdb file, or a mesh; stdin.vdb is the standard input.",
+          false,
+          {.endings = vdbAndMeshEndings()}}},
         {{"json", 0, "", "", "Print JSON instead of words.", "Output"}},
         {
             {"bandvox info bunny.vdb", "In words."},

@@ -7,6 +7,7 @@
 #include "frame_pattern.h"
 #include "interrupt.h"
 #include "words.h"
+#include "write_manual.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/version.h>
@@ -81,6 +82,10 @@ void runCommand(const std::vector<std::string>& arguments) {
     const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
     if (arguments[0] == "--version") return printVersion();
     if (arguments[0] == "help") return printHelp(rest);
+    // For the build alone, and so in no help.
+    if (arguments[0] == "--write-manual" && rest.size() == 1) {
+        return writeManual(rest.front(), commandTables());
+    }
 
     const Command& command = findCommand(arguments[0]);
     const CommandLine line(command.table(), rest);

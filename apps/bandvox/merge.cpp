@@ -36,13 +36,19 @@ const CommandTable& mergeTable() {
         "that convert --shard has made all together become what one machine would have made.",
         {{"A.vdb",
           "A .vdb file, whose lattice the result has; one input may be stdin.vdb, the "
-          "standard input."},
-         {"B.vdb", "More of them.", true}},
+          "standard input.",
+          false,
+          {.endings = {".vdb"}}},
+         {"B.vdb", "More of them.", true, {.endings = {".vdb"}}}},
         {
-            {"operation", 0, "KIND", "union",
+            {"operation",
+             0,
+             "KIND",
+             "union",
              "union: a + b - ab. sum: a + b. max. blend: the mean. difference: a (1 - b), the "
              "first without the others. intersection: ab.",
-             "Merging"},
+             "Merging",
+             {.words = {"union", "sum", "max", "blend", "difference", "intersection"}}},
             {"weights", 0, "W,W,...", "1 each", "Weights of a sum or a blend, one for each input.",
              "Merging"},
             {"clamp", 0, "", "", "Limit the result to 0 .. 1, as of a sum of parts that overlap.",
@@ -101,8 +107,7 @@ MergeRequest parseMerge(const CommandLine& line) {
     requireExtension(request.output, {".vdb"});
     request.grid = line.text("grid");
     request.resamples = line.has("resample");
-    request.merge.operation = static_cast<MergeOperation>(line.choice(
-        "operation", {"union", "sum", "max", "blend", "difference", "intersection"}, 0));
+    request.merge.operation = static_cast<MergeOperation>(line.choice("operation", 0));
     request.merge.weights = readWeights(line, request.inputs.size());
     request.merge.clamp = line.has("clamp");
     request.write.half = line.has("half");

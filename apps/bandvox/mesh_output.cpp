@@ -1,5 +1,6 @@
 #include "mesh_output.h"
 
+#include "file_endings.h"
 #include "words.h"
 
 #include <bandvox/mesh/density_to_mesh.h>
@@ -61,7 +62,8 @@ OptionEntry meshOrVdbOutputEntry() {
             joined(writableMeshExtensions(), " ") +
             "), an array (.npy .nrrd .nhdr .mha .mhd), or images of slices (out.####.png, .exr or "
             ".tif; one .tif). Needed.",
-        "Output"};
+        "Output",
+        {.endings = convertedEndings()}};
 }
 
 OptionEntry adaptivityEntry() {

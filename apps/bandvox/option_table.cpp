@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t kHelpColumn = 30;  // where the explanations start
 constexpr std::size_t kTextWidth = 96;   // where they end
 constexpr std::size_t kTextIndent = 2;
+constexpr std::size_t kStatusWidth = 7;
 
 const char* const kSharedGroup = "Shared by all commands";
 
@@ -101,16 +102,24 @@ const std::vector<OptionEntry>& sharedOptions() {
         {"threads", 0, "N", "0", "Threads to work with; 0 uses all processors.", kSharedGroup},
         {"quiet", 'q', "", "", "Say nothing but warnings and errors.", kSharedGroup},
         {"verbose", 'v', "", "", "Say more: every hole, every warning, times.", kSharedGroup},
-        {"progress", 0, "WHEN", "auto",
+        {"progress",
+         0,
+         "WHEN",
+         "auto",
          "Show how far the work is, on a terminal as a bar, else as lines \"Progress: 42%\": auto "
          "(not with --quiet, and lines only where there is an output), always or never.",
-         kSharedGroup},
+         kSharedGroup,
+         {.words = {"auto", "always", "never"}}},
         {"config", 0, "FILE", "",
          "Read options from FILE, one \"name = value\" a line; the command line wins over it.",
          kSharedGroup},
-        {"stats", 0, "FILE", "",
+        {"stats",
+         0,
+         "FILE",
+         "",
          "Write seconds and counts of each stage and the peak memory to FILE, as JSON.",
-         kSharedGroup},
+         kSharedGroup,
+         {.endings = {".json"}}},
         {"strict", 0, "", "", "Take a warning for a failure: write nothing.", kSharedGroup},
         {"help", 'h', "", "", "Print this text.", kSharedGroup},
         {"version", 0, "", "", "Print the version.", kSharedGroup},
@@ -153,9 +162,6 @@ std::string suggestionFor(const CommandTable& table, const std::string& name) {
                            : "did you mean '--" + nearest + "'?";
 }
 
-namespace {
-
-// All options, those of a group together, in the order in which both come first.
 std::vector<OptionEntry> groupedOptions(const CommandTable& table) {
     std::vector<OptionEntry> options = allOptions(table);
     for (auto begin = options.begin(); begin != options.end();) {
@@ -166,7 +172,26 @@ std::vector<OptionEntry> groupedOptions(const CommandTable& table) {
     return options;
 }
 
-}  // namespace
+const std::vector<ExitStatus>& exitStatuses() {
+    static const std::vector<ExitStatus> statuses{
+        {0, "done; the output is complete and not empty"},
+        {1, "failed while running (disk full, ...)"},
+        {2, "wrong usage"},
+        {3, "the input cannot be used (missing, malformed, wrong kind)"},
+        {4, "the result would be empty or worse than the tolerance asked for"},
+        {5, "not enough memory"},
+        {130, "interrupted"},
+    };
+    return statuses;
+}
+
+std::string purposeText() {
+    return "Turns shapes into band-limited OpenVDB volumes, and those into pictures.";
+}
+
+std::string outputText() {
+    return "Nothing is written unless the status is 0, but for frames that are done.";
+}
 
 std::string helpText(const CommandTable& table) {
     std::string out = "Usage: bandvox " + table.name;
@@ -199,23 +224,18 @@ std::string helpText(const CommandTable& table) {
 
 std::string overviewText(const std::vector<const CommandTable*>& tables) {
     std::string out =
-        "Usage: bandvox COMMAND [ARGUMENT]... [OPTION]...\n\n"
-        "Turns shapes into band-limited OpenVDB volumes, and those into pictures.\n\n"
-        "Commands\n";
+        "Usage: bandvox COMMAND [ARGUMENT]... [OPTION]...\n\n" + purposeText() + "\n\nCommands\n";
     for (const CommandTable* table : tables) {
         appendEntry(out, std::string(kTextIndent, ' ') + table->name, table->summary);
     }
     appendEntry(out, "  help COMMAND", "Print all options of a command.");
-    out +=
-        "\nExit status\n"
-        "  0    done; the output is complete and not empty\n"
-        "  1    failed while running (disk full, ...)\n"
-        "  2    wrong usage\n"
-        "  3    the input cannot be used (missing, malformed, wrong kind)\n"
-        "  4    the result would be empty or worse than the tolerance asked for\n"
-        "  5    not enough memory\n"
-        "  130  interrupted\n"
-        "Nothing is written unless the status is 0, but for frames that are done.\n";
+    out += "\nExit status\n";
+    for (const auto& [status, help] : exitStatuses()) {
+        std::string line = "  " + std::to_string(status);
+        line.resize(kStatusWidth, ' ');
+        out += line + help + '\n';
+    }
+    out += outputText() + '\n';
     return out;
 }
 

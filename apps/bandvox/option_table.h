@@ -6,6 +6,14 @@
 
 namespace bandvox::app {
 
+/// What a value may be, as far as that can be listed: for whatever completes command lines.
+struct ValueHint {
+    std::vector<std::string> words = {};    ///< the words to choose from
+    std::vector<std::string> endings = {};  ///< of files, lower case with the dot
+    bool isList = false;                    ///< several of the words, separated by commas
+    bool isFolder = false;                  ///< a folder will do, too
+};
+
 /// One option of a command, in words. Help, parser, and whatever else tells users about options
 /// are made from it.
 struct OptionEntry {
@@ -15,6 +23,7 @@ struct OptionEntry {
     std::string standard;  ///< what holds if it is not given; empty for a flag or a required one
     std::string help;      ///< one or two sentences
     std::string group;     ///< the heading it stands under
+    ValueHint hint = {};
 };
 
 /// One argument that stands without a name.
@@ -22,6 +31,7 @@ struct PositionalEntry {
     std::string name;  ///< as the help shows it
     std::string help;
     bool repeated = false;  ///< there may be more of it; of the last one
+    ValueHint hint = {};
 };
 
 /// A command line that works, and what it does.
@@ -54,6 +64,22 @@ const std::vector<OptionEntry>& sharedOptions();
 
 /// A command's own options followed by the shared ones.
 std::vector<OptionEntry> allOptions(const CommandTable& table);
+
+/// The same, those of a group together, in the order in which both come first.
+std::vector<OptionEntry> groupedOptions(const CommandTable& table);
+
+/// A status with which the command ends, and what it means.
+struct ExitStatus {
+    int status;
+    std::string help;
+};
+
+/// All of them.
+const std::vector<ExitStatus>& exitStatuses();
+
+/// What bandvox is for, and what holds for the outputs of all commands: a sentence each.
+std::string purposeText();
+std::string outputText();
 
 /// What to say of a name that no option has: "; did you mean ...?", or where they are listed.
 std::string suggestionFor(const CommandTable& table, const std::string& name);

@@ -2,6 +2,7 @@
 
 #include "command_run.h"
 #include "commands.h"
+#include "file_endings.h"
 #include "outline_input.h"
 #include "render_settings.h"
 #include "report_words.h"
@@ -24,6 +25,18 @@
 #include <vector>
 
 namespace bandvox::app {
+namespace {
+
+const std::vector<std::string> kOutlineKinds{"contour", "boundary", "crease", "intersection",
+                                             "isophote"};
+
+std::vector<std::string> outlineEndings() {
+    std::vector<std::string> endings = vdbAndMeshEndings();
+    endings.emplace_back(".bpt");
+    return endings;
+}
+
+}  // namespace
 
 const CommandTable& outlineTable() {
     static const CommandTable table = [] {
@@ -41,9 +54,16 @@ const CommandTable& outlineTable() {
             {{"INPUT",
               "Newell's .bpt, or .obj with free-form surfaces (cstype bezier or bspline); a .vdb; "
               "a mesh or a built-in shape; several of them are one scene.",
-              true}},
+              true,
+              {.words = shapeWords(), .endings = outlineEndings()}}},
             {
-                {"output", 'o', "FILE", "", "The .svg, .pdf or .eps file to write. Needed.", page},
+                {"output",
+                 'o',
+                 "FILE",
+                 "",
+                 "The .svg, .pdf or .eps file to write. Needed.",
+                 page,
+                 {.endings = {".svg", ".pdf", ".eps"}}},
                 {"page", 0, "SIZE",
                  formatNumber(options.width) + "x" + formatNumber(options.height),
                  "WxH in millimetres, or A3, A4, A5, letter, upright, or with -landscape.", page},
@@ -54,8 +74,13 @@ const CommandTable& outlineTable() {
                 {"crease-angle", 0, "DEG", formatNumber(options.creaseAngle),
                  "Patches that meet at more than this are drawn with a line between, 0 to 180.",
                  lines},
-                {"kinds", 0, "LIST", "contour,boundary,crease,intersection,isophote",
-                 "Which to draw.", lines},
+                {"kinds",
+                 0,
+                 "LIST",
+                 joined(kOutlineKinds, ","),
+                 "Which to draw.",
+                 lines,
+                 {.words = kOutlineKinds, .isList = true}},
                 {"isophotes", 0, "C,...", "none",
                  "Of volumes: also lines where the cosine of the angle between normal and light is "
                  "C, as in 0.3,0.7.",
@@ -90,8 +115,6 @@ const CommandTable& outlineTable() {
 
 namespace {
 
-const std::vector<std::string> kOutlineKinds{"contour", "boundary", "crease", "intersection",
-                                             "isophote"};
 constexpr Range kSomeLength{.low = 0, .high = 1e5, .lowOpen = true};
 
 struct OutlineRequest {

@@ -20,11 +20,15 @@ constexpr std::size_t kValues = 3;
 
 std::vector<OptionEntry> outputKindEntries() {
     return {
-        {"as", 0, "KIND", "density, of a volume values",
+        {"as",
+         0,
+         "KIND",
+         "density, of a volume values",
          "density: of the solid, 0.5 on its surface. level-set: distances from the density's "
          "surface, true ones. fog: as OpenVDB makes it of those, 0 on the surface and 1 inside. "
          "values: those of a volume, whatever they are.",
-         "Output"},
+         "Output",
+         {.words = kKinds}},
         {"band", 0, "W", formatNumber(LevelSetOptions().halfWidth),
          "Half the width of a level set's band, or the depth over which fog rises, in voxels, 1 to "
          "100.",

@@ -100,7 +100,7 @@ RenderRequest parseRender(const CommandLine& line) {
                                           "' is none: a .png holds colour alone");
     }
     request.previews = request.scene.picture.has("preview");
-    request.shading = static_cast<Shading>(line.choice("shading", shadingNames(), 0));
+    request.shading = static_cast<Shading>(line.choice("shading", 0));
     if (request.shading != Shading::Spectral) requirePlain(line, request);
     requireValid(request.picture);
     for (const Light& light : request.scene.lights) requireValid(light);
@@ -187,8 +187,13 @@ void drawSequence(CommandRun& run, const RenderRequest& request) {
 
 const CommandTable& renderTable() {
     static const CommandTable table = [] {
-        std::vector<OptionEntry> options{
-            {"output", 'o', "FILE", "", "The .png or .exr file to write. Needed.", "Picture"}};
+        std::vector<OptionEntry> options{{"output",
+                                          'o',
+                                          "FILE",
+                                          "",
+                                          "The .png or .exr file to write. Needed.",
+                                          "Picture",
+                                          {.endings = {".png", ".exr"}}}};
         for (const auto& entries : {pictureEntries(), sceneEntries()}) {
             options.insert(options.end(), entries.begin(), entries.end());
         }
@@ -201,11 +206,15 @@ const CommandTable& renderTable() {
                            "Which pictures: 7, 1-100, 1-100x2. Inputs may have a place for the "
                            "number, too.",
                            several});
-        options.push_back({"shading", 0, "KIND", shadingNames().front(),
+        options.push_back({"shading",
+                           0,
+                           "KIND",
+                           shadingNames().front(),
                            joined(shadingNames(), ", ") +
                                ": where normals come from. All but the first see voxels as cubes, "
                                "show stripes, and are here for comparison.",
-                           "For comparison"});
+                           "For comparison",
+                           {.words = shadingNames()}});
         return CommandTable{
             "render",
             "Draw densities (.vdb) as a picture (.png, .exr).",
@@ -219,7 +228,8 @@ const CommandTable& renderTable() {
             {{"INPUT",
               "A .vdb file, as often as there are objects, or one .json file with a scene; "
               "stdin.vdb is the standard input.",
-              true}},
+              true,
+              {.endings = {".vdb", ".json"}}}},
             options,
             {
                 {"bandvox render bunny.vdb -o bunny.png",

@@ -22,6 +22,7 @@ namespace {
 
 const Range kPart{.low = 0, .high = 1};
 const Range kLength{.low = 0, .high = 1e30};
+const std::vector<std::string> kModes{"surface", "volume"};
 
 // Settings of an object, on the command line for each of several between slashes.
 const std::vector<std::string> kObjectNames{
@@ -46,7 +47,7 @@ ObjectRequest readObject(const OptionValues& values, const std::string& file) {
     request.rotate = values.vector("rotate", kAnyPlace).value_or(request.rotate);
     request.translate = values.vector("translate", kAnyPlace).value_or(request.translate);
     SceneObject& object = request.object;
-    object.kind = static_cast<SceneObject::Kind>(values.choice("mode", {"surface", "volume"}, 0));
+    object.kind = static_cast<SceneObject::Kind>(values.choice("mode", kModes, 0));
     if (values.has("iso")) object.iso = values.number("iso", {}, 0);
     const bool isVolume = object.kind == SceneObject::Kind::Volume;
     Material& material = object.material;
@@ -295,7 +296,13 @@ std::vector<OptionEntry> sceneEntries() {
     return {
         {"grid", 0, "NAME", "density, or the only one of floats",
          "Which grid to draw; NAME[1] is the second one of that name.", object},
-        {"mode", 0, "KIND", "surface", "surface, or volume: fog, clouds and fire.", object},
+        {"mode",
+         0,
+         "KIND",
+         "surface",
+         "surface, or volume: fog, clouds and fire.",
+         object,
+         {.words = kModes}},
         {"iso", 0, "D", "as stored, else 0.5",
          "Density that is the surface; of a level set the distance, by default 0.", object},
         {"color", 0, "R,G,B", vector(standard.color) + ", volumes " + vector(medium.color),
@@ -338,10 +345,14 @@ std::vector<OptionEntry> sceneEntries() {
          light},
         {"ambient", 0, "A", formatNumber(standard.ambient) + ", with --environment 1",
          "Light from around, 0 to 1.", light},
-        {"environment", 0, "FILE", "",
+        {"environment",
+         0,
+         "FILE",
+         "",
          "Image of all that is around, latitude and longitude, for the light from around; then "
          "there is no lamp unless one is asked for.",
-         light},
+         light,
+         {.endings = {".exr", ".hdr", ".png", ".jpg"}}},
         {"environment-turn", 0, "DEG", "0", "Turn it about y.", light},
         {"environment-visible", 0, "", "", "Show it behind the objects.", light},
     };

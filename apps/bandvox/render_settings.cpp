@@ -18,6 +18,8 @@ constexpr int kMostSamples = 1024;
 constexpr int kMostBounces = 64;
 constexpr int kMostMegabytes = 1 << 20;
 const Range kPositive{.low = 0, .lowOpen = true};
+const std::vector<std::string> kProjections{"perspective", "orthographic"};
+const std::vector<std::string> kVolumeMethods{"steps", "tracking"};
 
 // In the order of ImageChannels.
 std::vector<std::string> channelNames() {
@@ -46,9 +48,8 @@ CameraOptions readCamera(const OptionValues& values, double aspect) {
     if (const auto file = values.text("camera-file")) camera = readGltfCamera(*file, aspect);
     using Projection = CameraOptions::Projection;
     const std::array projections{Projection::Perspective, Projection::Orthographic};
-    camera.projection =
-        projections[values.choice("camera", {"perspective", "orthographic"},
-                                  camera.projection == Projection::Orthographic ? 1 : 0)];
+    camera.projection = projections[values.choice(
+        "camera", kProjections, camera.projection == Projection::Orthographic ? 1 : 0)];
     if (const auto eye = values.vector("eye", kAnyPlace)) camera.eye = eye;
     if (const auto lookat = values.vector("lookat", kAnyPlace)) camera.lookat = lookat;
     if (const auto up = values.vector("up", kAnyPlace)) camera.up = up;
@@ -71,11 +72,21 @@ std::vector<OptionEntry> cameraEntries() {
     const CameraOptions camera;
     const std::string view = "Camera";
     return {
-        {"camera", 0, "KIND", "perspective", "perspective or orthographic.", view},
-        {"camera-file", 0, "FILE", "",
+        {"camera",
+         0,
+         "KIND",
+         "perspective",
+         "perspective or orthographic.",
+         view,
+         {.words = kProjections}},
+        {"camera-file",
+         0,
+         "FILE",
+         "",
          "A .gltf or .glb file with a camera; FILE:NAME takes the one of that name, else it is the "
          "first. The options below change it.",
-         view},
+         view,
+         {.endings = {".gltf", ".glb"}}},
         {"eye", 0, "X,Y,Z", "chosen", "Where the camera is, world.", view},
         {"lookat", 0, "X,Y,Z", "the middle", "What it looks at, world.", view},
         {"up", 0, "X,Y,Z", "0,1,0, or z along y", "What is up in the picture.", view},
@@ -101,14 +112,24 @@ std::vector<OptionEntry> pictureEntries() {
         {"res", 0, "WxH", std::to_string(options.width) + "x" + std::to_string(options.height),
          "Width and height, pixels.", picture},
         {"samples", 0, "N", std::to_string(options.samples), "Lines of sight per pixel.", picture},
-        {"filter", 0, "KIND", pixelFilterNames().front(),
-         "How they count for the pixel: " + joined(pixelFilterNames(), ", ") + ".", picture},
+        {"filter",
+         0,
+         "KIND",
+         pixelFilterNames().front(),
+         "How they count for the pixel: " + joined(pixelFilterNames(), ", ") + ".",
+         picture,
+         {.words = pixelFilterNames()}},
         {"crop", 0, "L,T,R,B", "all",
          "Draw a part of the picture: columns L to R and rows T to B, from the upper left corner, "
          "the last ones not included. An .exr says where it belongs.",
          picture},
-        {"channels", 0, "LIST", joined(channelNames(), ","),
-         "What an .exr holds: R G B A, Z, N and P.", picture},
+        {"channels",
+         0,
+         "LIST",
+         joined(channelNames(), ","),
+         "What an .exr holds: R G B A, Z, N and P.",
+         picture,
+         {.words = channelNames(), .isList = true}},
         {"background", 0, "R,G,B", "transparent", "Linear colour behind the objects.", picture},
         {"seed", 0, "N", std::to_string(options.seed), "Of all that is random.", picture},
         {"allow-empty", 0, "", "",
@@ -138,10 +159,14 @@ std::vector<OptionEntry> pictureEntries() {
          "How often light goes on from one matt surface to the next, where it is gathered.", light},
         {"depth", 0, "N", std::to_string(options.transport.depth),
          "How often a line of sight is mirrored and refracted at most.", light},
-        {"volume-method", 0, "KIND", "steps",
+        {"volume-method",
+         0,
+         "KIND",
+         "steps",
          "steps: even steps through volumes, smooth. tracking: random ones, which are exact on "
          "average.",
-         light},
+         light,
+         {.words = kVolumeMethods}},
         {"step", 0, "V", formatNumber(options.volumes.step), "Voxels to a step in volumes.", light},
     };
     entries.insert(entries.end(), ofLight.begin(), ofLight.end());
@@ -170,8 +195,8 @@ PictureOptions readPictureOptions(const OptionValues& values) {
     options.tolerance = values.number("read-error", {.low = 1e-6, .high = 0.1}, options.tolerance);
     options.camera = readCamera(values, double(options.height) / options.width);
     options.transport = readTransport(values);
-    options.volumes.method = static_cast<VolumeOptions::Method>(
-        values.choice("volume-method", {"steps", "tracking"}, 0));
+    options.volumes.method =
+        static_cast<VolumeOptions::Method>(values.choice("volume-method", kVolumeMethods, 0));
     options.volumes.step = values.number("step", {.low = 0.05, .high = 16}, options.volumes.step);
     return options;
 }

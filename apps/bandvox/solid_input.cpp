@@ -1,7 +1,9 @@
 #include "solid_input.h"
 
+#include "file_endings.h"
 #include "words.h"
 
+#include <bandvox/core/memory.h>
 #include <bandvox/source/read_mesh.h>
 #include <bandvox/source/read_patches.h>
 #include <bandvox/source/shapes.h>
@@ -72,7 +74,10 @@ std::string meshOrShape() {
 }  // namespace
 
 PositionalEntry solidInputEntry() {
-    return {"INPUT", "A " + meshOrShape() + "."};
+    return {"INPUT",
+            "A " + meshOrShape() + ".",
+            false,
+            {.words = shapeWords(), .endings = meshExtensions()}};
 }
 
 bool isPatchFile(const std::string& input) {
@@ -155,6 +160,8 @@ SolidMesh makeSolidMesh(CommandRun& run, const std::string& input, MeshFile file
         run.warn(united.report.warnings, ErrorKind::Input);
         closed.mesh = std::move(united.mesh);
     }
+    // The mesh takes a part of what reading and mending it did.
+    returnFreeMemory();
     return {path.filename().string(), std::move(closed.mesh), std::move(closed.soup),
             static_cast<int>(closed.report.holes.size())};
 }

@@ -35,10 +35,14 @@ std::vector<OptionEntry> stackEntries() {
          volumes},
         {"origin", 0, "X,Y,Z", "as the file says, else 0",
          "The same for the place of its first voxel's centre, in the file's own space.", volumes},
-        {"space", 0, "LPS|RAS", "as the file says",
+        {"space",
+         0,
+         "LPS|RAS",
+         "as the file says",
          "Of scans and their grids, where the result's axes point: to left, posterior and superior "
          "as those of DICOM do, or to right, anterior and superior.",
-         volumes},
+         volumes,
+         {.words = {"LPS", "RAS"}}},
         {"channel", 0, "NAME", "",
          "Of images with several channels, the one to take: R, G, B, A, luminance, or a number "
          "from 0. Needed unless R, G and B are equal and nothing is transparent.",

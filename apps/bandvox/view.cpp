@@ -114,9 +114,15 @@ const CommandTable& viewTable() {
         "filter passes, and what the grid says of its errors. Grids that are too large are reduced "
         "for it by averages, without aliasing. Takes any grid of floats: densities, fog, level "
         "sets.",
-        {{"INPUT", "A .vdb file; stdin.vdb is the standard input."}},
+        {{"INPUT", "A .vdb file; stdin.vdb is the standard input.", false, {.endings = {".vdb"}}}},
         {
-            {"output", 'o', "FILE", "", "The .html file to write. Needed.", "Page"},
+            {"output",
+             'o',
+             "FILE",
+             "",
+             "The .html file to write. Needed.",
+             "Page",
+             {.endings = {".html"}}},
             {"title", 0, "TEXT", "the input's name", "What the page is called.", "Page"},
             {"grid", 0, "NAME", "density, or the only one of floats",
              "Which grid to show; NAME[1] is the second one of that name.", "Volume"},

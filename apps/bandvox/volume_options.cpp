@@ -34,11 +34,18 @@ OptionEntry vdbOutputEntry() {
             "FILE",
             "",
             "The .vdb file to write; stdout.vdb is the standard output. Needed.",
-            "Output"};
+            "Output",
+            {.endings = {".vdb"}}};
 }
 
 OptionEntry compressionEntry() {
-    return {"compression", 0, "KIND", "blosc", "blosc, zip or none.", "Output"};
+    return {"compression",
+            0,
+            "KIND",
+            "blosc",
+            "blosc, zip or none.",
+            "Output",
+            {.words = {"blosc", "zip", "none"}}};
 }
 
 OptionEntry shardEntry() {
@@ -99,7 +106,7 @@ ExponentialFilter readFilter(const CommandLine& line, ExponentialFilter standard
 VdbWriteOptions::Compression readCompression(const CommandLine& line) {
     using Compression = VdbWriteOptions::Compression;
     return std::array{Compression::Blosc, Compression::Zip,
-                      Compression::None}[line.choice("compression", {"blosc", "zip", "none"}, 0)];
+                      Compression::None}[line.choice("compression", 0)];
 }
 
 }  // namespace bandvox::app

@@ -58,9 +58,8 @@ void readSamples(const CommandLine& line, VoxelizeRequest& request) {
     VoxelOptions& voxels = request.voxels;
     if (line.has("threshold")) voxels.threshold = line.wholeNumber("threshold", 1, 8, 0);
     voxels.fraction = line.has("fraction");
-    voxels.axis =
-        std::array{ScanAxis::X, ScanAxis::Y, ScanAxis::Z}[line.choice("axis", {"x", "y", "z"}, 0)];
-    request.asMask = line.choice("as", {"density", "mask"}, 0) == 1;
+    voxels.axis = std::array{ScanAxis::X, ScanAxis::Y, ScanAxis::Z}[line.choice("axis", 0)];
+    request.asMask = line.choice("as", 0) == 1;
     if (request.asMask && voxels.fraction) {
         throw Error(ErrorKind::Usage,
                     "a mask cannot hold what --fraction gives; expected --as density, or "
@@ -69,10 +68,10 @@ void readSamples(const CommandLine& line, VoxelizeRequest& request) {
 }
 
 void readBackend(const CommandLine& line, VoxelizeRequest& request) {
-    request.backend = std::array{Backend::Auto, Backend::Cpu,
-                                 Backend::Gpu}[line.choice("backend", {"auto", "cpu", "gpu"}, 0)];
-    request.gpuMethod = std::array{
-        GpuMethod::Bits, GpuMethod::Slices}[line.choice("gpu-method", {"bits", "slices"}, 0)];
+    request.backend =
+        std::array{Backend::Auto, Backend::Cpu, Backend::Gpu}[line.choice("backend", 0)];
+    request.gpuMethod =
+        std::array{GpuMethod::Bits, GpuMethod::Slices}[line.choice("gpu-method", 0)];
     if (line.has("gpu-method") && request.backend == Backend::Cpu) {
         throw Error(ErrorKind::Usage,
                     "--gpu-method says how the GPU works; expected --backend gpu or auto");
@@ -195,15 +194,35 @@ const CommandTable& voxelizeTable() {
              "Take eight samples in each voxel, of which T, 1 to 8, have to be inside.", "Voxels"},
             {"fraction", 0, "", "",
              "Take eight samples in each voxel; its value is the share of them inside.", "Voxels"},
-            {"axis", 0, "AXIS", "x", "Along which axis rows are scanned: x, y or z.", "Voxels"},
-            {"backend", 0, "NAME", "auto",
+            {"axis",
+             0,
+             "AXIS",
+             "x",
+             "Along which axis rows are scanned: x, y or z.",
+             "Voxels",
+             {.words = {"x", "y", "z"}}},
+            {"backend",
+             0,
+             "NAME",
+             "auto",
              "cpu; gpu, which is OpenGL without a window, for meshes; or auto: a GPU if there is "
              "one, not a program that stands in for it.",
-             "Voxels"},
-            {"gpu-method", 0, "NAME", "bits",
-             "bits: all slices are drawn at once; slices: one by one, for comparison.", "Voxels"},
-            {"as", 0, "KIND", "density",
-             "density: a grid of floats; mask: one of booleans, true inside.", "Output"},
+             "Voxels",
+             {.words = {"auto", "cpu", "gpu"}}},
+            {"gpu-method",
+             0,
+             "NAME",
+             "bits",
+             "bits: all slices are drawn at once; slices: one by one, for comparison.",
+             "Voxels",
+             {.words = {"bits", "slices"}}},
+            {"as",
+             0,
+             "KIND",
+             "density",
+             "density: a grid of floats; mask: one of booleans, true inside.",
+             "Output",
+             {.words = {"density", "mask"}}},
             vdbOutputEntry(),
             compressionEntry(),
         },

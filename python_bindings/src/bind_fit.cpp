@@ -8,7 +8,6 @@
 #include "surface_object.h"
 
 #include <bandvox/scatter/fit_surface.h>
-#include <bandvox/scatter/read_scattered_points.h>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -33,16 +32,8 @@ void judge(const SurfaceFit& fit, const FitSurfaceOptions& options, bool hasTole
         message += " in the root of the mean square; expected " + inDigits(options.noise);
         return warn({message + ", by smooth"});
     }
-    const double largest = fit.report.back().largest;
-    if (largest <= options.tolerance) return;
-    std::string message = "the surface is off by " + inDigits(largest);
-    message += " of the range at a point; expected " + inDigits(options.tolerance);
-    message += " at most, by tolerance";
-    constexpr double kUseless = 0.01;
-    if (hasTolerance || (!options.maxLevel && !(largest <= kUseless))) {
-        throw Error(ErrorKind::Result, message);
-    }
-    warn({message});
+    judgeResidual({"surface", fit.report.back().largest, options.tolerance, hasTolerance,
+                   options.maxLevel.has_value()});
 }
 
 SharedSurface fitted(const py::object& places, const py::object& values,
@@ -50,22 +41,10 @@ SharedSurface fitted(const py::object& places, const py::object& values,
                      bool hasTolerance, const std::optional<std::array<int, 2>>& levels,
                      int threads, const py::object& progress) {
     auto object = std::make_shared<SurfaceObject>();
-    const bool isFile = isPath(places);
-    if (isFile == !values.is_none()) {
-        throw Error(ErrorKind::Usage,
-                    "expected a file alone, or places of shape (n, 2) and their values");
-    }
-    ScatteredPoints points;
-    std::filesystem::path path;
-    if (isFile) {
-        path = places.cast<std::filesystem::path>();
-        object->name = path.filename().string();
-    } else {
-        points = scatteredOf(places, values, 2);
-    }
+    ScatteredInput input(places, values, columns, 2);
+    if (!input.fileName().empty()) object->name = input.fileName();
     const SurfaceFit fit = inBackground(progress, threads, [&](Progress& watched) {
-        if (isFile) points = readScatteredPoints(path, {columns, false}, watched).points;
-        return fitSurface(points, options, watched);
+        return fitSurface(input.points(watched), options, watched);
     });
     judge(fit, options, hasTolerance);
     object->surface = levels ? sumOf(fit, *levels) : fit.sum();

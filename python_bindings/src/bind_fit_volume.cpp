@@ -11,7 +11,6 @@
 #include <bandvox/core/parallel.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/scatter/fit_volume.h>
-#include <bandvox/scatter/read_scattered_points.h>
 #include <bandvox/scatter/spline_volume_to_grids.h>
 
 #include <pybind11/stl.h>
@@ -39,37 +38,19 @@ void judgeVolume(const VolumeFit& fit, const FitVolumeOptions& options, bool has
         std::string message = "no field differs from the values by as much as smooth says; ";
         warn({message + "this one does by " + inDigits(fit.rms) + " of the range"});
     }
-    if (options.noise > 0 || fit.largest <= options.tolerance) return;
-    std::string message = "the field is off by " + inDigits(fit.largest);
-    message += " of the range at a point; expected " + inDigits(options.tolerance);
-    message += " at most, by tolerance";
-    constexpr double kUseless = 0.01;
-    if (hasTolerance || (!options.maxLevel && !(fit.largest <= kUseless))) {
-        throw Error(ErrorKind::Result, message);
-    }
-    warn({message});
+    if (options.noise > 0) return;
+    judgeResidual(
+        {"field", fit.largest, options.tolerance, hasTolerance, options.maxLevel.has_value()});
 }
 
 SharedVolume fittedVolume(const py::object& places, const py::object& values,
                           const std::vector<std::string>& columns, const FitVolumeOptions& options,
                           bool hasTolerance, int threads, const py::object& progress) {
     auto object = std::make_shared<VolumeObject>();
-    const bool isFile = isPath(places);
-    if (isFile == !values.is_none()) {
-        throw Error(ErrorKind::Usage,
-                    "expected a file alone, or places of shape (n, 3) and their values");
-    }
-    ScatteredPoints points;
-    std::filesystem::path path;
-    if (isFile) {
-        path = places.cast<std::filesystem::path>();
-        object->name = path.filename().string();
-    } else {
-        points = scatteredOf(places, values, 3);
-    }
+    ScatteredInput input(places, values, columns, 3);
+    if (!input.fileName().empty()) object->name = input.fileName();
     object->fit = inBackground(progress, threads, [&](Progress& watched) {
-        if (isFile) points = readScatteredPoints(path, {columns, true}, watched).points;
-        return fitVolume(points, options, watched);
+        return fitVolume(input.points(watched), options, watched);
     });
     judgeVolume(object->fit, options, hasTolerance);
     return object;

@@ -1,10 +1,15 @@
 #include "scattered_arrays.h"
 
 #include "arrays.h"
+#include "errors.h"
+#include "solid_mesh.h"
 
 #include <bandvox/core/error.h>
 
+#include <pybind11/stl/filesystem.h>
+
 #include <cstdio>
+#include <optional>
 
 namespace bandvox::python {
 
@@ -43,6 +48,34 @@ ScatteredPoints scatteredOf(const py::handle& places, const py::handle& values, 
         for (std::size_t i = 0; i < rows; ++i) (*axes[axis])[i] = where.data()[width * i + axis];
     }
     return points;
+}
+
+ScatteredInput::ScatteredInput(const py::object& places, const py::object& values,
+                               const std::vector<std::string>& columns, int dimensions)
+    : mChoice{columns, dimensions == 3} {
+    const bool isFile = isPath(places);
+    if (isFile == !values.is_none()) {
+        throw Error(ErrorKind::Usage, "expected a file alone, or places of shape (n, " +
+                                          std::to_string(dimensions) + ") and their values");
+    }
+    if (isFile) {
+        mPath = places.cast<std::filesystem::path>();
+    } else {
+        mPoints = scatteredOf(places, values, dimensions);
+    }
+}
+
+const ScatteredPoints& ScatteredInput::points(Progress& progress) {
+    if (!mPath.empty()) mPoints = readScatteredPoints(mPath, mChoice, progress);
+    return mPoints;
+}
+
+void judgeResidual(const FitResidual& residual) {
+    const std::optional<FitFault> fault = faultOf(residual);
+    if (!fault) return;
+    const std::string message = fault->message + ", by tolerance";
+    if (fault->isError) throw Error(ErrorKind::Result, message);
+    warn({message});
 }
 
 PlanePlaces planePlacesOf(const py::handle& x, const py::handle& y) {

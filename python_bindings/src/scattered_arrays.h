@@ -1,9 +1,13 @@
 #pragma once
 
+#include <bandvox/core/progress.h>
+#include <bandvox/scatter/fit_residual.h>
+#include <bandvox/scatter/read_scattered_points.h>
 #include <bandvox/scatter/scattered_points.h>
 
 #include <pybind11/numpy.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -13,6 +17,28 @@ namespace bandvox::python {
 /// Error(ErrorKind::Usage) for arrays of other shapes.
 ScatteredPoints scatteredOf(const pybind11::handle& places, const pybind11::handle& values,
                             int dimensions);
+
+/// The points of a file, or those of arrays.
+class ScatteredInput {
+  public:
+    /// Takes the arrays now. `places`: a path, and no values then. Throws Error(ErrorKind::Usage).
+    ScatteredInput(const pybind11::object& places, const pybind11::object& values,
+                   const std::vector<std::string>& columns, int dimensions);
+
+    /// Empty for arrays.
+    std::string fileName() const { return mPath.filename().string(); }
+
+    /// Reads the file if there is one, which needs no interpreter. Throws as readScatteredPoints.
+    const ScatteredPoints& points(Progress& progress);
+
+  private:
+    std::filesystem::path mPath;  // empty for arrays
+    PointColumnChoice mChoice;
+    ScatteredPoints mPoints;
+};
+
+/// Raises or warns if a fit leaves more at the points than it should.
+void judgeResidual(const FitResidual& residual);
 
 /// Two arrays of numbers as NumPy makes one shape of them.
 struct PlanePlaces {

@@ -35,6 +35,10 @@ TEST(HeightFieldSource, IsClosedAndHasItsVolume) {
     volume /= (kSide - 1.0) * (kSide - 1.0);
     EXPECT_NEAR(source->volume(), volume, 1e-6);
     EXPECT_NEAR(source->bounds().min()[2], -0.2, 1e-12);
+    // The box ends at the surface, and not at its control points.
+    const double top = *std::max_element(heights.begin(), heights.end());
+    EXPECT_GE(source->bounds().max()[2], top - 1e-9);
+    EXPECT_LE(source->bounds().max()[2], top + 5e-6);
     // The exact route measures whether the surface is closed, and the density keeps the volume.
     const DensityResult density = surfaceToDensity(*source, {.resolution = 40});
     EXPECT_LT(density.metadata.closureError, 1e-4);

@@ -40,9 +40,8 @@ std::string binaryPly(bool bigEndian) {
     return bytes;
 }
 
-void expectCloud(const NamedPoints& named) {
-    EXPECT_EQ(named.names, (Texts{"heat", "red", "green", "blue"}));
-    const ScatteredPoints& points = named.points;
+void expectCloud(const ScatteredPoints& points) {
+    EXPECT_EQ(points.names, (Texts{"heat", "red", "green", "blue"}));
     EXPECT_EQ(points.x, (std::vector<double>{0.5, 1.5}));
     EXPECT_EQ(points.y, (std::vector<double>{2, 3}));
     EXPECT_EQ(points.z, (std::vector<double>{3, 4}));
@@ -70,14 +69,14 @@ TEST(ReadScatteredPoints, TakesThePointsOfPlyFiles) {
         expectCloud(readScatteredPoints(folder.write(name, bytes), inSpace));
     }
     // In a plane z is a value as others are.
-    const NamedPoints flat = readScatteredPoints(folder.write("flat.ply", binaryPly(false)));
+    const ScatteredPoints flat = readScatteredPoints(folder.write("flat.ply", binaryPly(false)));
     EXPECT_EQ(flat.names.front(), "z");
-    EXPECT_FALSE(flat.points.isInSpace());
+    EXPECT_FALSE(flat.isInSpace());
     PointColumnChoice chosen;
     chosen.columns = {"z", "x", "heat"};
-    const NamedPoints some =
+    const ScatteredPoints some =
         readScatteredPoints(folder.write("some.ply", binaryPly(false)), chosen);
-    EXPECT_EQ(some.points.x, (std::vector<double>{3, 4}));
+    EXPECT_EQ(some.x, (std::vector<double>{3, 4}));
     EXPECT_EQ(some.names, Texts{"heat"});
 }
 
@@ -105,7 +104,7 @@ TEST(ReadScatteredPoints, TakesArraysOfEveryType) {
     for (const auto& bytes :
          {npyOf("<i2", "False", "2, 3", shorts), npyOf(">f8", "False", "2, 3", bigDoubles),
           npyOf("<f4", "True", "2, 3", columns)}) {
-        const ScatteredPoints points = readScatteredPoints(folder.write("a.npy", bytes)).points;
+        const ScatteredPoints points = readScatteredPoints(folder.write("a.npy", bytes));
         EXPECT_EQ(points.x, (std::vector<double>{1, 4}));
         EXPECT_EQ(points.y, (std::vector<double>{2, 5}));
         EXPECT_EQ(points.values, (std::vector<double>{3, 6}));

@@ -78,19 +78,34 @@ std::complex<double> waveIntegral(const std::vector<PlanePoint>& points, double 
     return sum;
 }
 
-// The root mean square over directions of the rule's error, for each κ. `symmetry` is the
-// angle in which the element repeats itself up to a mirror image.
-WaveErrors waveErrors(const std::vector<PlanePoint>& rule, const std::vector<PlanePoint>& reference,
-                      double symmetry) {
-    WaveErrors errors{};
+// The integrals of waves over an element, for each κ and direction. `symmetry` is the angle in
+// which the element repeats itself up to a mirror image.
+std::vector<std::complex<double>> waveIntegrals(const std::vector<PlanePoint>& points,
+                                                double symmetry) {
+    std::vector<std::complex<double>> integrals;
+    integrals.reserve(static_cast<std::size_t>(kWaves) * kDirections);
     for (int i = 0; i < kWaves; ++i) {
         const double wave = i * kWaveStep;
-        double sum = 0;
         for (int direction = 0; direction < kDirections; ++direction) {
             const double angle = symmetry * (direction + 0.5) / kDirections;
-            const double kx = wave * std::cos(angle);
-            const double ky = wave * std::sin(angle);
-            sum += std::norm(waveIntegral(rule, kx, ky) - waveIntegral(reference, kx, ky));
+            integrals.push_back(
+                waveIntegral(points, wave * std::cos(angle), wave * std::sin(angle)));
+        }
+    }
+    return integrals;
+}
+
+// The root mean square over directions of the rule's error, for each κ, `truth` being the
+// integrals.
+WaveErrors waveErrors(const std::vector<PlanePoint>& rule,
+                      const std::vector<std::complex<double>>& truth, double symmetry) {
+    const std::vector<std::complex<double>> found = waveIntegrals(rule, symmetry);
+    WaveErrors errors{};
+    for (std::size_t i = 0; i < kWaves; ++i) {
+        double sum = 0;
+        for (std::size_t direction = 0; direction < kDirections; ++direction) {
+            const std::size_t at = i * kDirections + direction;
+            sum += std::norm(found[at] - truth[at]);
         }
         errors[i] = std::sqrt(sum / kDirections);
     }
@@ -133,9 +148,11 @@ struct RuleErrors {
 
 RuleErrors computeRuleErrors() {
     RuleErrors errors{};
-    const std::vector<PlanePoint> reference = referenceOnTriangle();
+    constexpr double kOfTriangle = pi / 6, kOfSquare = pi / 4;
+    const auto onTriangles = waveIntegrals(referenceOnTriangle(), kOfTriangle);
     for (int rule = 0; rule < kTriangleRules; ++rule) {
-        errors.triangle[rule] = waveErrors(onTriangle(triangleRule(rule)), reference, pi / 6);
+        errors.triangle[rule] =
+            waveErrors(onTriangle(triangleRule(rule)), onTriangles, kOfTriangle);
     }
     // Two of the finest product rule side by side and one above the other are the truth here.
     std::vector<PlanePoint> fine;
@@ -146,8 +163,9 @@ RuleErrors computeRuleErrors() {
             }
         }
     }
+    const auto onSquares = waveIntegrals(fine, kOfSquare);
     for (int rule = 0; rule < kIntervalRules; ++rule) {
-        errors.cell[rule] = waveErrors(onSquare(intervalRule(rule)), fine, pi / 4);
+        errors.cell[rule] = waveErrors(onSquare(intervalRule(rule)), onSquares, kOfSquare);
     }
     return errors;
 }

@@ -1,5 +1,6 @@
 #include "grid/guarded_reads.h"
 #include "grid/leaf_reading.h"
+#include "grid/leaf_writing.h"
 #include "grid/sound_extent.h"
 #include "grid/sound_transform.h"
 
@@ -138,10 +139,11 @@ std::string readBytes(std::istream& stream, const std::string& name) {
 
 void writeVdb(AtomicFile& file, const openvdb::GridCPtrVec& grids, const VdbWriteOptions& options) {
     initializeOpenVdb();
-    // Shallow copies carry the "save as half" flag without touching the caller's grids.
+    // Copies that share the trees carry the "save as half" flag without touching the caller's
+    // grids.
     openvdb::GridCPtrVec saved;
     for (const openvdb::GridBase::ConstPtr& grid : grids) {
-        const auto copy = openvdb::ConstPtrCast<openvdb::GridBase>(grid->copyGrid());
+        const auto copy = writtenByAllThreads(*grid);
         copy->setSaveFloatAsHalf(options.half);
         saved.push_back(copy);
     }

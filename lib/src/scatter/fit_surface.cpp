@@ -200,10 +200,8 @@ void Fitting::takeLacking(int level) {
 /// Adds bumps narrower than the points are apart.
 void Fitting::mend(int level) {
     const NetShape shape = shapeOfLevel(level, mUnit.side, false);
-    // A crowd in few cells has no surface of them, and takes the cube of its size to find that out.
-    constexpr std::size_t kCrowd = 1000;
-    if (mostNeighbors(mUnit.points, shape) > kCrowd) return;
     const ResidualMender mender(mUnit.points, shape);
+    if (mender.isCrowded()) return;
     Columns bumps;
     for (const auto& lacking : mLacking) {
         auto& net = bumps.emplace_back(shape.count());

@@ -178,13 +178,13 @@ double lowestOf(const Ordinates& patch) {
     return *std::min_element(patch.begin(), patch.end());
 }
 
-/// How far the surface goes down, to 1e-9 of the range of its ordinates: parts that may be lower
-/// than any place that is known are divided.
-double lowestHeight(const BsplineSurface& surface, int column) {
+/// How far the surface goes down, and if `sign` is -1, how far up, to 1e-9 of the range of its
+/// ordinates: parts that may go farther than any place that is known are divided.
+double extremeHeight(const BsplineSurface& surface, int column, double sign) {
     const auto [low, high] = ordinateRange(surface, column);
     constexpr double kNear = 1e-9;
     const double enough = kNear * (high - low);
-    double lowest = high;
+    double lowest = sign > 0 ? high : -low;
     std::vector<Ordinates> parts;
     const auto look = [&](const Ordinates& patch) {
         lowest = std::min({lowest, patch[0], patch[3], patch[12], patch[15]});
@@ -194,7 +194,9 @@ double lowestHeight(const BsplineSurface& surface, int column) {
     for (int i = 0; i < nx; ++i) {
         for (int j = 0; j < ny; ++j) {
             parts.clear();
-            look(surface.bezierOrdinates(i, j, column));
+            Ordinates whole = surface.bezierOrdinates(i, j, column);
+            for (double& ordinate : whole) ordinate *= sign;
+            look(whole);
             while (!parts.empty()) {
                 const Ordinates patch = parts.back();
                 parts.pop_back();
@@ -203,7 +205,7 @@ double lowestHeight(const BsplineSurface& surface, int column) {
             }
         }
     }
-    return lowest;
+    return sign * lowest;
 }
 
 }  // namespace
@@ -218,7 +220,7 @@ double heightBelow(const BsplineSurface& surface, double margin, int column) {
 std::unique_ptr<BoundarySource> makeHeightFieldSource(const std::string& name,
                                                       const BsplineSurface& surface, double base,
                                                       int column) {
-    const double lowest = lowestHeight(surface, column);
+    const double lowest = extremeHeight(surface, column, 1);
     if (!(lowest > base)) {
         throw Error(ErrorKind::Usage, "the base at " + inFull(base) +
                                           " is not below the surface, which goes down to " +
@@ -243,9 +245,11 @@ std::unique_ptr<BoundarySource> makeHeightFieldSource(const std::string& name,
     patches.push_back(std::make_unique<QuadPatch>(Vec3d(r.x0, r.y0, base), Vec3d(r.x0, r.y1, base),
                                                   Vec3d(r.x1, r.y1, base),
                                                   Vec3d(r.x1, r.y0, base)));
+    const openvdb::BBoxd bounds({r.x0, r.y0, base},
+                                {r.x1, r.y1, extremeHeight(surface, column, -1)});
     double area = 0;
     for (const auto& patch : patches) area += areaOf(*patch);
-    return std::make_unique<PatchSource>(name, std::move(patches), volume, area);
+    return std::make_unique<PatchSource>(name, std::move(patches), volume, area, bounds);
 }
 
 }  // namespace bandvox

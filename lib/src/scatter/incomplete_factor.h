@@ -1,20 +1,13 @@
 #pragma once
 
+#include "scatter/sparse_rows.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace bandvox {
-
-/// A symmetric matrix by rows; the neighbours of a row rise, and hold the row itself.
-struct SparseRows {
-    std::vector<std::size_t> start{0};
-    std::vector<std::uint32_t> neighbor;
-    std::vector<double> entry;
-
-    std::size_t size() const { return start.size() - 1; }
-};
 
 /// The incomplete Cholesky factor of blocks on the diagonal of a positive definite matrix, without
 /// entries where the matrix has none. What two rows in a block have nearly in common it resolves,

@@ -3,7 +3,6 @@
 #include <bandvox/core/memory.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace bandvox {
@@ -93,25 +92,10 @@ std::vector<std::size_t> countProducts(const SortedPoints& points, const NetShap
     return start;
 }
 
-}  // namespace
-
-std::size_t mostNeighbors(const SortedPoints& points, const NetShape& shape) {
-    const std::vector<std::size_t> start = countProducts(points, shape, CellRows(points, shape));
-    std::size_t most = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        most = std::max(most, start[i + 1] - start[i]);
-    }
-    return most;
-}
-
-ResidualMender::ResidualMender(const SortedPoints& points, const NetShape& shape)
-    : mNetPoints(points, shape), mProducts(multiplyNeighbors(points, mNetPoints)) {}
-
-SparseRows ResidualMender::multiplyNeighbors(const SortedPoints& points, const NetPoints& net) {
+/// Fills the rows, whose starts are known.
+void multiplyNeighbors(const SortedPoints& points, const NetPoints& net, const CellRows& rows,
+                       SparseRows& products) {
     const NetShape& shape = net.shape();
-    const CellRows rows(points, shape);
-    SparseRows products;
-    products.start = countProducts(points, shape, rows);
     // Factored they are there twice.
     constexpr double kBytesOfProduct = sizeof(std::uint32_t) + 2 * sizeof(double);
     requireMemory(kBytesOfProduct * static_cast<double>(products.start.back()),
@@ -137,58 +121,20 @@ SparseRows ResidualMender::multiplyNeighbors(const SortedPoints& points, const N
             }
         }
     });
-    return products;
 }
 
-void ResidualMender::multiply(std::span<const double> x, std::span<double> y) const {
-    forPieces(x.size(), kPointsInPiece, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            double sum = 0;
-            for (std::size_t k = mProducts.start[i]; k < mProducts.start[i + 1]; ++k) {
-                sum += mProducts.entry[k] * x[mProducts.neighbor[k]];
-            }
-            y[i] = sum;
-        }
-    });
-}
+}  // namespace
 
-std::vector<double> ResidualMender::multipliers(std::span<const double> lacking, double enough,
-                                                int steps, Progress& progress) const {
-    const std::size_t count = lacking.size();
-    const IncompleteFactor factor(mProducts);
-    std::vector<double> solution(count), residual(lacking.begin(), lacking.end()), better(count),
-        image(count);
-    const auto largest = [&] {
-        double most = 0;
-        for (const double r : residual) most = std::max(most, std::abs(r));
-        return most;
-    };
-    factor.solve(residual, better);
-    std::vector<double> direction = better;
-    double measure = dotProduct(residual, better);
-    for (int step = 0; step < steps && largest() > enough; ++step) {
-        progress.throwIfInterrupted();
-        multiply(direction, image);
-        const double curvature = dotProduct(direction, image);
-        if (!(curvature > 0)) break;
-        const double length = measure / curvature;
-        forPieces(count, kPointsInPiece, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                solution[i] += length * direction[i];
-                residual[i] -= length * image[i];
-            }
-        });
-        factor.solve(residual, better);
-        const double next = dotProduct(residual, better);
-        const double kept = next / measure;
-        forPieces(count, kPointsInPiece, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                direction[i] = better[i] + kept * direction[i];
-            }
-        });
-        measure = next;
+ResidualMender::ResidualMender(const SortedPoints& points, const NetShape& shape)
+    : mNetPoints(points, shape) {
+    const CellRows rows(points, shape);
+    mProducts.start = countProducts(points, shape, rows);
+    // A crowd takes the square of its size in memory.
+    constexpr std::size_t kCrowd = 1000;
+    for (std::size_t i = 0; i < points.size() && !mIsCrowded; ++i) {
+        mIsCrowded = mProducts.start[i + 1] - mProducts.start[i] > kCrowd;
     }
-    return solution;
+    if (!mIsCrowded) multiplyNeighbors(points, mNetPoints, rows, mProducts);
 }
 
 }  // namespace bandvox

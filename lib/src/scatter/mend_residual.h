@@ -1,7 +1,7 @@
 #pragma once
 
-#include "scatter/incomplete_factor.h"
 #include "scatter/net_points.h"
+#include "scatter/sparse_rows.h"
 
 #include <bandvox/core/progress.h>
 
@@ -9,9 +9,6 @@
 #include <vector>
 
 namespace bandvox {
-
-/// How many points are at most up to three cells away from one, itself included.
-std::size_t mostNeighbors(const SortedPoints& points, const NetShape& shape);
 
 /// What a net without a margin has to add so that points get the values they lack: of all the nets
 /// that do, the one whose control points are least in the sum of squares. Where cells are narrower
@@ -21,10 +18,16 @@ class ResidualMender {
     /// Keeps a reference to the points.
     ResidualMender(const SortedPoints& points, const NetShape& shape);
 
+    /// Whether so many points are within three cells of one that there is no telling them apart:
+    /// then it is of no use, and the memory of their products was not taken.
+    bool isCrowded() const { return mIsCrowded; }
+
     /// The multipliers of the points' splines whose sum takes the values `lacking`, up to `enough`
     /// at any point, if so many steps do. Throws Error(ErrorKind::Interrupted).
     std::vector<double> multipliers(std::span<const double> lacking, double enough, int steps,
-                                    Progress& progress) const;
+                                    Progress& progress) const {
+        return solveSparseRows(mProducts, lacking, enough, steps, progress);
+    }
 
     /// Adds the bumps to a net.
     void addTo(std::span<double> net, std::span<const double> multipliers) const {
@@ -32,11 +35,9 @@ class ResidualMender {
     }
 
   private:
-    static SparseRows multiplyNeighbors(const SortedPoints& points, const NetPoints& net);
-    void multiply(std::span<const double> x, std::span<double> y) const;
-
     NetPoints mNetPoints;
     SparseRows mProducts;  // of the points' splines
+    bool mIsCrowded = false;
 };
 
 }  // namespace bandvox

@@ -1,5 +1,6 @@
 #include "scatter/space_points.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace bandvox {
@@ -53,8 +54,9 @@ OccupiedCells::OccupiedCells(const SortedSpacePoints& points, int level)
         const SpaceNet::Place cell = points.cell(begin, level);
         std::size_t end = begin + 1;
         while (end < points.size() && points.cell(end, level) == cell) ++end;
-        mCells[keyOfCell(cell)] = {static_cast<std::uint32_t>(begin),
-                                   static_cast<std::uint32_t>(end)};
+        const PointRange range{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+        mCells[keyOfCell(cell)] = range;
+        mInOrder.push_back(range);
         begin = end;
     }
 }
@@ -92,17 +94,27 @@ double OccupiedCells::nearest(std::size_t i) const {
 
 std::vector<std::uint32_t> OccupiedCells::pointsNear(const SpaceNet::Place& cell,
                                                      double reach) const {
-    std::vector<std::uint32_t> found;
-    const int rings = static_cast<int>(std::floor(reach)) + 1;
     const auto gap = [](int a, int b) { return std::max(std::abs(a - b) - 1, 0); };
-    for (int ring = 0; ring <= rings; ++ring) {
-        forRing(cell, ring, [&](const SpaceNet::Place& other) {
-            const double distance =
-                std::hypot(gap(cell[0], other[0]), gap(cell[1], other[1]), gap(cell[2], other[2]));
-            if (distance > reach) return;
-            const auto [begin, end] = pointsOf(other);
-            for (std::uint32_t i = begin; i < end; ++i) found.push_back(i);
-        });
+    std::vector<std::pair<double, PointRange>> near;
+    const auto takeIfNear = [&](const SpaceNet::Place& other, const PointRange& range) {
+        const double distance =
+            std::hypot(gap(cell[0], other[0]), gap(cell[1], other[1]), gap(cell[2], other[2]));
+        if (distance <= reach && range.first < range.second) near.emplace_back(distance, range);
+    };
+    const int rings = static_cast<int>(std::floor(reach)) + 1;
+    if (static_cast<double>(mInOrder.size()) < std::pow(2 * rings + 1, 3)) {
+        for (const PointRange& range : mInOrder)
+            takeIfNear(mPoints.cell(range.first, mLevel), range);
+    } else {
+        for (int ring = 0; ring <= rings; ++ring) {
+            forRing(cell, ring,
+                    [&](const SpaceNet::Place& other) { takeIfNear(other, pointsOf(other)); });
+        }
+    }
+    std::sort(near.begin(), near.end());
+    std::vector<std::uint32_t> found;
+    for (const auto& [distance, range] : near) {
+        for (std::uint32_t i = range.first; i < range.second; ++i) found.push_back(i);
     }
     return found;
 }

@@ -50,13 +50,11 @@ class PointTaker {
         mPoints.lines.push_back(static_cast<std::uint32_t>(line));
     }
 
-    NamedPoints take(const std::string& lineWord) {
-        NamedPoints result;
+    ScatteredPoints take(const std::string& lineWord) {
         mPoints.columns = static_cast<int>(mColumns.size() - mPlaces);
         mPoints.lineWord = lineWord;
-        for (std::size_t i = mPlaces; i < mColumns.size(); ++i) result.names.push_back(nameOf(i));
-        result.points = std::move(mPoints);
-        return result;
+        for (std::size_t i = mPlaces; i < mColumns.size(); ++i) mPoints.names.push_back(nameOf(i));
+        return std::move(mPoints);
     }
 
   private:

@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-NamedPoints readTable(const FileContents& file, const PointColumnChoice& choice,
-                      Progress& progress) {
+ScatteredPoints readTable(const FileContents& file, const PointColumnChoice& choice,
+                          Progress& progress) {
     TableRows table(file);
     if (!table.begin([](const auto&) { return false; })) {
         file.fail("has no points; expected some");
@@ -44,7 +44,8 @@ NamedPoints readTable(const FileContents& file, const PointColumnChoice& choice,
     return taker.take("line");
 }
 
-NamedPoints readNpy(const FileContents& file, const PointColumnChoice& choice, Progress& progress) {
+ScatteredPoints readNpy(const FileContents& file, const PointColumnChoice& choice,
+                        Progress& progress) {
     constexpr std::size_t kLongestHeader = 1 << 17;
     std::istringstream begin(file.bytes.substr(0, kLongestHeader));
     const NpyLayout layout = readNpyLayout(file.path, begin, 2);
@@ -84,7 +85,8 @@ bool isCodedColor(const PlyProperty& property) {
            std::find(names.begin(), names.end(), property.name) != names.end();
 }
 
-NamedPoints readPly(const FileContents& file, const PointColumnChoice& choice, Progress& progress) {
+ScatteredPoints readPly(const FileContents& file, const PointColumnChoice& choice,
+                        Progress& progress) {
     PlyVertices vertices(file);
     PointTaker taker(file, vertices.properties().size(), vertices.names(), choice);
     const std::vector<std::size_t> columns = taker.columns();
@@ -106,8 +108,8 @@ NamedPoints readPly(const FileContents& file, const PointColumnChoice& choice, P
 
 }  // namespace
 
-NamedPoints readScatteredPoints(const fs::path& path, const PointColumnChoice& choice,
-                                Progress& progress) {
+ScatteredPoints readScatteredPoints(const fs::path& path, const PointColumnChoice& choice,
+                                    Progress& progress) {
     const std::string extension = lowerExtension(path);
     static const std::array<std::string, 5> known{".csv", ".xyz", ".txt", ".npy", ".ply"};
     if (std::find(known.begin(), known.end(), extension) == known.end()) {
@@ -123,10 +125,10 @@ NamedPoints readScatteredPoints(const fs::path& path, const PointColumnChoice& c
     }
     const ProgressStage stage(progress, "read points", 0);
     const FileContents file = readFile(path);
-    NamedPoints points = extension == ".npy"   ? readNpy(file, choice, progress)
-                         : extension == ".ply" ? readPly(file, choice, progress)
-                                               : readTable(file, choice, progress);
-    if (points.points.size() == 0) file.fail("has no points; expected some");
+    ScatteredPoints points = extension == ".npy"   ? readNpy(file, choice, progress)
+                             : extension == ".ply" ? readPly(file, choice, progress)
+                                                   : readTable(file, choice, progress);
+    if (points.size() == 0) file.fail("has no points; expected some");
     return points;
 }
 

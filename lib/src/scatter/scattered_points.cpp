@@ -99,6 +99,12 @@ bool isSamePlace(const ScatteredPoints& points, std::size_t i, std::size_t j) {
            (!points.isInSpace() || points.z[i] == points.z[j]);
 }
 
+std::string nameOfColumn(const ScatteredPoints& points, int column) {
+    const auto index = static_cast<std::size_t>(column);
+    if (index < points.names.size()) return points.names[index];
+    return "value " + std::to_string(column + 1);
+}
+
 void checkAgreement(const ScatteredPoints& points, const std::vector<std::size_t>& order,
                     std::size_t begin, std::size_t end, const std::vector<double>& allowed) {
     for (int column = 0; column < points.columns; ++column) {
@@ -114,8 +120,8 @@ void checkAgreement(const ScatteredPoints& points, const std::vector<std::size_t
         std::ostringstream text;
         text.precision(10);
         text << "the place " << shownPlace(points, order[begin]) << " has values from " << low
-             << lineOfPoint(points, least) << " to " << high << lineOfPoint(points, most)
-             << " in value " << column + 1
+             << lineOfPoint(points, least) << " to " << high << lineOfPoint(points, most) << " in "
+             << nameOfColumn(points, column)
              << "; expected one value, or such as differ by no more than "
              << allowed[static_cast<std::size_t>(column)];
         throw Error(ErrorKind::Input, text.str());

@@ -47,13 +47,15 @@ class OccupiedCells {
     double nearest(std::size_t i) const;
 
     /// The points in cells that are, at their nearest, no farther than `reach` from a cell, in
-    /// units of cells.
+    /// units of cells; those of near cells first.
     std::vector<std::uint32_t> pointsNear(const SpaceNet::Place& cell, double reach) const;
 
   private:
     const SortedSpacePoints& mPoints;
     int mLevel;
-    std::unordered_map<std::uint64_t, std::pair<std::uint32_t, std::uint32_t>> mCells;
+    using PointRange = std::pair<std::uint32_t, std::uint32_t>;
+    std::unordered_map<std::uint64_t, PointRange> mCells;
+    std::vector<PointRange> mInOrder;  // of all cells, as the points are sorted
 };
 
 /// How many cells of a level hold points.

@@ -106,8 +106,10 @@ ReachReader::ReachReader(const SplineVolumeParts& parts)
     : mParts(parts), mCells(std::ldexp(1.0, parts.occupied->level())) {}
 
 const ReachReader::Cell& ReachReader::cellOf(const SpaceNet::Place& place) {
-    for (const Cell& cell : mKnown) {
-        if (cell.place == place) return cell;
+    // Voxels of a row are in the same cell mostly.
+    if (!mKnown.empty() && mKnown[mLast].place == place) return mKnown[mLast];
+    for (std::size_t i = 0; i < mKnown.size(); ++i) {
+        if (mKnown[i].place == place) return mKnown[mLast = i];
     }
     Cell found{place, mParts.near.contains(place), false, {}};
     found.isSure = found.isNear && mParts.sure.contains(place);
@@ -116,10 +118,12 @@ const ReachReader::Cell& ReachReader::cellOf(const SpaceNet::Place& place) {
     }
     // As many as a block of voxels meets if these are smaller than cells.
     constexpr std::size_t kMostKnown = 8;
-    if (mKnown.size() < kMostKnown) return mKnown.emplace_back(std::move(found));
-    Cell& replaced = mKnown[mNext++ % kMostKnown];
-    replaced = std::move(found);
-    return replaced;
+    if (mKnown.size() < kMostKnown) {
+        mLast = mKnown.size();
+        return mKnown.emplace_back(std::move(found));
+    }
+    mLast = mNext++ % kMostKnown;
+    return mKnown[mLast] = std::move(found);
 }
 
 bool ReachReader::covers(const std::array<double, 3>& at) {

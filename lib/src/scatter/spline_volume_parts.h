@@ -66,6 +66,7 @@ class ReachReader {
     double mCells;
     std::vector<Cell> mKnown;
     std::size_t mNext = 0;  // to be replaced
+    std::size_t mLast = 0;  // looked up before
 };
 
 /// Reads a layer's values. What is around the last place is kept, so that places near each other

@@ -168,6 +168,14 @@ PatchSource::PatchSource(std::string name, PatchList patches, double volume, dou
     for (const auto& patch : mPatches) mBounds.expand(patch->bounds({}));
 }
 
+PatchSource::PatchSource(std::string name, PatchList patches, double volume, double area,
+                         const openvdb::BBoxd& bounds)
+    : mName(std::move(name)),
+      mPatches(std::move(patches)),
+      mBounds(bounds),
+      mVolume(volume),
+      mArea(area) {}
+
 void PatchSource::sampleElement(std::size_t i, const SamplingRegion& region,
                                 const SurfaceQuadrature& quadrature,
                                 std::vector<SurfaceSample>& samples) const {

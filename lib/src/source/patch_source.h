@@ -19,6 +19,9 @@ class PatchSource final : public BoundarySource {
   public:
     /// `volume` and `area` in world units, by whoever knows the shape.
     PatchSource(std::string name, PatchList patches, double volume, double area);
+    /// The same with a box that is known to be smaller than those of the patches.
+    PatchSource(std::string name, PatchList patches, double volume, double area,
+                const openvdb::BBoxd& bounds);
 
     std::string name() const override { return mName; }
     openvdb::BBoxd bounds() const override { return mBounds; }

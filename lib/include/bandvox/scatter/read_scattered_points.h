@@ -18,14 +18,8 @@ struct PointColumnChoice {
     bool isInSpace = false;
 };
 
-/// Points, and what the file calls their values.
-struct NamedPoints {
-    ScatteredPoints points;
-    std::vector<std::string>
-        names;  ///< one for each column of values; "value" or "value 2" if none
-};
-
-/// Reads a table of places and values.
+/// Reads a table of places and values. Columns that the file has no names for become "value", or
+/// "value 1" and so on.
 ///
 /// .csv .xyz .txt: a line for each point, its numbers separated by semicolons, tabs, commas or
 /// blanks. If no word of the first line is a number, it names the columns. Lines that are
@@ -37,8 +31,8 @@ struct NamedPoints {
 /// different lengths, too few columns, a word where a number belongs or a number that is
 /// not finite; Error(ErrorKind::Usage) for columns that are not there or chosen twice;
 /// Error(ErrorKind::Interrupted).
-NamedPoints readScatteredPoints(const std::filesystem::path& path,
-                                const PointColumnChoice& choice = {},
-                                Progress& progress = silentProgress());
+ScatteredPoints readScatteredPoints(const std::filesystem::path& path,
+                                    const PointColumnChoice& choice = {},
+                                    Progress& progress = silentProgress());
 
 }  // namespace bandvox

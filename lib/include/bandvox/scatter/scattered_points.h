@@ -11,10 +11,11 @@ namespace bandvox {
 
 /// Values at places in a plane or in space, in any order.
 struct ScatteredPoints {
-    std::vector<double> x, y;    ///< world units, finite
-    std::vector<double> z;       ///< the same; empty in a plane
-    int columns = 1;             ///< values at each place, 1 or more
-    std::vector<double> values;  ///< [place][column], finite
+    std::vector<double> x, y;        ///< world units, finite
+    std::vector<double> z;           ///< the same; empty in a plane
+    int columns = 1;                 ///< values at each place, 1 or more
+    std::vector<double> values;      ///< [place][column], finite
+    std::vector<std::string> names;  ///< of the columns; may be empty
     /// Where each stands in the file that it comes from, for errors; may be empty.
     std::vector<std::uint32_t> lines;
     std::string lineWord = "line";  ///< what the file has: lines, or rows
