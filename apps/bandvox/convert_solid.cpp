@@ -6,6 +6,7 @@
 #include "color_grid.h"
 #include "command_run.h"
 #include "density_report.h"
+#include "solid_density.h"
 #include "solid_input.h"
 #include "solid_output.h"
 #include "stack_input.h"
@@ -15,9 +16,7 @@
 
 #include <bandvox/bandlimit/field_to_density.h>
 #include <bandvox/bandlimit/soup_to_density.h>
-#include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/grid/density_grid.h>
-#include <bandvox/source/mesh_source.h>
 #include <bandvox/source/shapes.h>
 
 #include <nlohmann/json.hpp>
@@ -36,25 +35,8 @@ namespace {
 
 constexpr int kMostOversample = 64;
 
-// How far the integral of a sampled shape may be from its volume, relative, before it is worth a
-// word. Samples on faces, which count as inside, come to that at a few tens of voxels.
-constexpr double kSampledVolumeError = 0.02;
-
-/// By which a solid becomes a density, in the order in which --route names them.
-enum class Route { Auto, Exact, Sampled, Winding };
-
-struct ConvertRequest {
-    std::string input;
-    bool isPatches = false;      ///< free-form surfaces
-    std::optional<double> base;  ///< of those
-    Route route = Route::Auto;
-    Overlap overlap = Overlap::Union;
-    DensityOptions density;
+struct ConvertRequest : SolidDensityRequest {
     bool color = false;
-    bool oversampleGiven = false;
-    int samplesPerSide = FieldDensityOptions().oversample;  // of the sampled route
-    int rowsPerVoxel = SoupDensityOptions().rowsPerVoxel;   // of that of the winding number
-    std::optional<double> samplingTolerance;                ///< if it was asked for
     SolidOutput output;
 };
 
@@ -171,74 +153,14 @@ struct ConvertedGrids {
     std::optional<ColorResult> color;  ///< if it was asked for
 };
 
-DensityResult meshToDensity(CommandRun& run, const ConvertRequest& request, MeshFile file) {
-    const Capping capping = request.route == Route::Exact     ? Capping::All
-                            : request.route == Route::Winding ? Capping::None
-                                                              : Capping::Sensible;
-    SolidMesh mesh = makeSolidMesh(run, request.input, std::move(file), {capping, request.overlap});
-    DensityResult result;
-    if (mesh.soup.triangles.empty()) {
-        const MeshSource source(mesh.name, std::move(mesh.solid));
-        result = surfaceToDensity(source, request.density, run.progress());
-        if (request.oversampleGiven) {
-            result.warnings.push_back(
-                "--oversample was not used: caps close the whole mesh, which took the exact route");
-        }
-    } else {
-        SoupDensityOptions options;
-        options.density = request.density;
-        options.density.tolerance = std::min(options.density.tolerance, DensityOptions().tolerance);
-        options.rowsPerVoxel = request.rowsPerVoxel;
-        options.samplingTolerance = request.samplingTolerance.value_or(options.samplingTolerance);
-        result = soupToDensity({mesh.name, std::move(mesh.soup), std::move(mesh.solid)}, options,
-                               run.progress());
-    }
-    result.metadata.holesCapped = mesh.holesCapped;
-    return result;
-}
-
-DensityResult patchesToDensity(CommandRun& run, const ConvertRequest& request) {
-    const PatchSolid solid = loadPatchSolid(
-        run, request.input, {.unite = request.overlap == Overlap::Union, .base = request.base});
-    DensityResult result = surfaceToDensity(*solid.source, request.density, run.progress());
-    result.metadata.holesCapped = static_cast<int>(solid.report.holes.size());
-    return result;
-}
-
-ConvertedGrids meshToGrids(CommandRun& run, const ConvertRequest& request) {
-    if (!request.color) {
-        return {meshToDensity(run, request, readMesh(request.input, run.progress())), {}};
-    }
+ConvertedGrids solidToGrids(CommandRun& run, const ConvertRequest& request) {
+    if (!request.color) return {solidToDensity(run, request), {}};
     // Colours are those of the triangles as read, whatever is done to make a solid of them.
     MeshFile plain;
     const ColoredMesh colored = loadColors(run, request.input, plain);
     DensityResult density = meshToDensity(run, request, std::move(plain));
     ColorResult color = makeColors(run, colored, density, request.density);
     return {std::move(density), std::move(color)};
-}
-
-DensityResult shapeToDensity(CommandRun& run, const ConvertRequest& request) {
-    run.say("read     " + request.input);
-    const auto boundary = makeShapeBoundary(request.input);
-    if (request.route != Route::Sampled) {
-        return surfaceToDensity(*boundary, request.density, run.progress());
-    }
-    FieldDensityOptions options;
-    options.density = request.density;
-    options.oversample = request.samplesPerSide;
-    options.samplingTolerance = request.samplingTolerance.value_or(options.samplingTolerance);
-    DensityResult result = fieldToDensity(*makeShapeField(request.input), options, run.progress());
-    // Of a shape, unlike other fields, the volume is known.
-    DensityMetadata& metadata = result.metadata;
-    metadata.sourceVolume = boundary->volume();
-    const double difference = std::abs(metadata.gridVolume / metadata.sourceVolume - 1);
-    // Where the sampling error is too large, that has been said.
-    if (difference > kSampledVolumeError && !metadata.clamped && result.warnings.empty()) {
-        result.warnings.push_back("the integral of the density differs from the volume by " +
-                                  formatNumber(100 * difference, 2) +
-                                  " %; use more voxels, or take more samples (--oversample)");
-    }
-    return result;
 }
 
 // The default tolerance of sampling warns; one that was asked for has to be kept.
@@ -269,9 +191,7 @@ void convertSolid(ConvertJob& job) {
     if (!job.begin()) return;
     CommandRun& run = job.run();
     std::optional<AtomicFile> file = request.output.openFile();
-    ConvertedGrids grids = isShape(request.input) ? ConvertedGrids{shapeToDensity(run, request), {}}
-                           : request.isPatches ? ConvertedGrids{patchesToDensity(run, request), {}}
-                                               : meshToGrids(run, request);
+    ConvertedGrids grids = solidToGrids(run, request);
     DensityResult& result = grids.density;
     requireTolerance(request, result);
     finishDensity(run, request.output, result.grid, result.metadata);

@@ -1,14 +1,16 @@
-// bandvox outline: free-form surfaces as a drawing of lines.
+// bandvox outline: free-form surfaces, volumes and meshes as a drawing of lines.
 
 #include "command_run.h"
 #include "commands.h"
+#include "file_endings.h"
+#include "outline_input.h"
 #include "render_settings.h"
 #include "report_words.h"
 #include "words.h"
 
 #include <bandvox/outline/patches_to_outline.h>
+#include <bandvox/outline/volumes_to_outline.h>
 #include <bandvox/outline/write_outline.h>
-#include <bandvox/source/read_patches.h>
 
 #include <nlohmann/json.hpp>
 
@@ -25,7 +27,14 @@
 namespace bandvox::app {
 namespace {
 
-const std::vector<std::string> kOutlineKinds{"contour", "boundary", "crease", "intersection"};
+const std::vector<std::string> kOutlineKinds{"contour", "boundary", "crease", "intersection",
+                                             "isophote"};
+
+std::vector<std::string> outlineEndings() {
+    std::vector<std::string> endings = vdbAndMeshEndings();
+    endings.emplace_back(".bpt");
+    return endings;
+}
 
 }  // namespace
 
@@ -36,16 +45,17 @@ const CommandTable& outlineTable() {
         const std::string page = "Page", lines = "Lines";
         CommandTable made{
             "outline",
-            "Draw free-form surfaces as lines (.svg, .pdf, .eps).",
+            "Draw free-form surfaces, volumes and meshes as lines (.svg, .pdf, .eps).",
             "Draws the contours, boundaries, creases and intersections of Bézier and B-spline "
-            "surfaces as Bézier curves. They are computed on the surfaces, never on polygons, and "
+            "surfaces as Bézier curves, and the contours of volumes and of meshes, which are made "
+            "volumes first. They are computed on the surfaces, never on polygons, and "
             "what is hidden is found by lines of sight to the surfaces. Visible and hidden lines "
             "are layers of the drawing.",
-            {{"SURFACES",
-              "Newell's .bpt, or .obj with free-form surfaces (cstype bezier or bspline); several "
-              "files are one scene.",
+            {{"INPUT",
+              "Newell's .bpt, or .obj with free-form surfaces (cstype bezier or bspline); a .vdb; "
+              "a mesh or a built-in shape; several of them are one scene.",
               true,
-              {.endings = {".bpt", ".obj"}}}},
+              {.words = shapeWords(), .endings = outlineEndings()}}},
             {
                 {"output",
                  'o',
@@ -71,6 +81,12 @@ const CommandTable& outlineTable() {
                  "Which to draw.",
                  lines,
                  {.words = kOutlineKinds, .isList = true}},
+                {"isophotes", 0, "C,...", "none",
+                 "Of volumes: also lines where the cosine of the angle between normal and light is "
+                 "C, as in 0.3,0.7.",
+                 lines},
+                {"light", 0, "X,Y,Z", "-0.4,0.7,0.8",
+                 "Direction to that light, along the camera's right, up and back.", lines},
                 {"no-hidden", 0, "", "", "Leave hidden lines away.", lines},
                 {"stroke", 0, "MM", formatNumber(stroke.width), "Width of visible lines.", lines},
                 {"stroke-color", 0, "COLOR", stroke.color,
@@ -84,10 +100,14 @@ const CommandTable& outlineTable() {
             {
                 {"bandvox outline teapot.bpt -o teapot.svg --up 0,0,1 --from 1,-2,1",
                  "Newell's teapot, hidden lines dashed."},
+                {"bandvox outline bunny.obj -o bunny.svg --resolution 96",
+                 "A mesh; the fewer voxels, the plainer the drawing."},
                 {"bandvox outline hull.obj -o hull.svg --page A4-landscape --camera orthographic",
                  "A parallel view on a page for a printer."},
             }};
-        for (const OptionEntry& entry : cameraEntries()) made.options.push_back(entry);
+        for (const auto& entries : {outlineInputEntries(), cameraEntries()}) {
+            made.options.insert(made.options.end(), entries.begin(), entries.end());
+        }
         return made;
     }();
     return table;
@@ -98,7 +118,7 @@ namespace {
 constexpr Range kSomeLength{.low = 0, .high = 1e5, .lowOpen = true};
 
 struct OutlineRequest {
-    std::vector<std::string> inputs;
+    OutlineInputs inputs;
     std::string output;
     OutlineOptions options;
     StrokeOptions stroke;
@@ -147,9 +167,17 @@ std::string readStyle(const CommandLine& line, const std::string& option, std::s
     return *text;
 }
 
+std::vector<double> readIsophotes(const CommandLine& line) {
+    constexpr std::size_t kMost = 64;
+    return line
+        .numbers("isophotes", 1, kMost, "cosines between -1 and 1, as in 0.3,0.7",
+                 {.low = -1, .high = 1, .lowOpen = true, .highOpen = true})
+        .value_or(std::vector<double>());
+}
+
 OutlineRequest parseOutline(const CommandLine& line) {
     OutlineRequest request;
-    request.inputs = line.positionals();
+    request.inputs = readOutlineInputs(line);
     request.output = line.requiredText("output");
     requireExtension(request.output, {".svg", ".pdf", ".eps"});
     OutlineOptions& options = request.options;
@@ -161,6 +189,8 @@ OutlineRequest parseOutline(const CommandLine& line) {
     options.creaseAngle = line.number("crease-angle", {.low = 0, .high = 180}, options.creaseAngle);
     options.camera = readCamera(
         line, (options.height - 2 * options.margin) / (options.width - 2 * options.margin));
+    options.isophotes = readIsophotes(line);
+    options.light = line.vector("light", kAnyPlace).value_or(options.light);
     request.kinds = line.choices("kinds", kOutlineKinds);
     options.hidden = !line.has("no-hidden");
     request.stroke.width = line.number("stroke", kSomeLength, request.stroke.width);
@@ -170,23 +200,6 @@ OutlineRequest parseOutline(const CommandLine& line) {
     request.stroke.hiddenColor = readStyle(line, "hidden-color", request.stroke.hiddenColor);
     request.stroke.dash = readStyle(line, "dash", request.stroke.dash);
     return request;
-}
-
-PatchModel readModels(CommandRun& run, const OutlineRequest& request) {
-    PatchModel all;
-    for (const std::string& input : request.inputs) {
-        PatchModel model = readPatches(input, run.progress());
-        run.say("read     " + input + ": " +
-                formatCount(static_cast<std::int64_t>(model.patches.size()), "patch", "patches"));
-        run.warn(model.warnings, ErrorKind::Input);
-        const int shift = static_cast<int>(all.objects.size());
-        for (BezierPatch& patch : model.patches) {
-            patch.object += shift;
-            all.patches.push_back(std::move(patch));
-        }
-        all.objects.insert(all.objects.end(), model.objects.begin(), model.objects.end());
-    }
-    return all;
 }
 
 void sayOutline(CommandRun& run, const Outline& outline) {
@@ -214,11 +227,14 @@ void runOutline(const CommandLine& line) {
     const OutlineRequest request = parseOutline(line);
     CommandRun run(line);
     AtomicFile output(request.output);
-    const PatchModel model = readModels(run, request);
+    const OutlineScene scene = loadOutlineScene(run, request.inputs);
     Outline outline;
     {
         const ProgressStage stage(run.progress(), "drawing", 0);
-        outline = patchesToOutline(model, request.options, run.progress());
+        outline =
+            scene.volumes.empty()
+                ? patchesToOutline(scene.patches, request.options, run.progress())
+                : volumesToOutline(scene.volumes, scene.patches, request.options, run.progress());
     }
     std::erase_if(outline.paths, [&](const OutlinePath& path) {
         return !request.kinds[static_cast<std::size_t>(path.kind)];

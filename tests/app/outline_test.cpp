@@ -141,6 +141,60 @@ TEST(Outline, ReadsFreeFormSurfacesOfObjFiles) {
     EXPECT_NE(svg.find("inkscape:label=\"cylinder\""), std::string::npos);
 }
 
+TEST(Outline, DrawsVolumesMeshesAndShapes) {
+    const TemporaryFolder folder;
+    const auto run = [&](const Names& words) {
+        return runBandvox(words, {.folder = folder.path()});
+    };
+    ASSERT_EQ(run({"convert", "shape:torus", "-r", "48", "-o", "torus.vdb"}).status, 0);
+    ASSERT_EQ(run({"convert", "shape:torus", "-r", "48", "-o", "torus.obj"}).status, 0);
+    const RunResult volume = run({"outline", "torus.vdb", "-o", "volume.svg"});
+    ASSERT_EQ(volume.status, 0) << volume.err;
+    ASSERT_EQ(
+        run({"outline", "shape:torus", "-r", "48", "-o", "shape.svg", "--threads", "1"}).status, 0);
+    const auto labelled = [&](const std::string& name, const std::string& label) {
+        std::string svg = readText(folder / name);
+        const std::string word = "inkscape:label=\"" + label + "\"";
+        const std::size_t at = svg.find(word);
+        EXPECT_NE(at, std::string::npos) << name;
+        return svg.erase(at, at == std::string::npos ? 0 : word.size());
+    };
+    // A shape is made the same volume.
+    const std::string drawn = labelled("volume.svg", "torus");
+    EXPECT_EQ(drawn, labelled("shape.svg", "shape:torus"));
+    EXPECT_EQ(occurrences(drawn, "class=\"visible contour\""), 1U);
+    EXPECT_EQ(occurrences(drawn, "class=\"hidden contour\""), 1U);
+    const RunResult mesh = run({"outline", "torus.obj", "examples.bpt", "-o", "mesh.svg"});
+    EXPECT_EQ(mesh.status, 3);
+    const RunResult mixed = run({"outline", "torus.obj", kTeapotFile, "-r", "48", "--isophotes",
+                                 "0.2,0.6", "--iso", "volume", "-o", "mixed.pdf"});
+    ASSERT_EQ(mixed.status, 0) << mixed.err;
+    EXPECT_NE(readText(folder / "mixed.pdf").find("isophote"), std::string::npos);
+}
+
+TEST(Outline, RefusesOptionsOfVolumesThatHaveNoUse) {
+    const TemporaryFolder folder;
+    const auto statusOf = [&](Names words) {
+        words.insert(words.begin(), "outline");
+        words.insert(words.end(), {"-o", "out.svg"});
+        return runBandvox(words, {.folder = folder.path()}).status;
+    };
+    ASSERT_EQ(runBandvox({"convert", "shape:sphere", "-r", "16", "-o", "ball.vdb"},
+                         {.folder = folder.path()})
+                  .status,
+              0);
+    EXPECT_EQ(statusOf({kTeapotFile, "-r", "64"}), 2);
+    EXPECT_EQ(statusOf({kTeapotFile, "--isophotes", "0.5"}), 2);
+    EXPECT_EQ(statusOf({"ball.vdb", "--order", "4"}), 2);
+    EXPECT_EQ(statusOf({"ball.vdb", "--isophotes", "1"}), 2);
+    EXPECT_EQ(statusOf({"ball.vdb", "--light", "0,0,0"}), 2);
+    EXPECT_EQ(statusOf({"shape:sphere", "--grid", "density"}), 2);
+    EXPECT_EQ(statusOf({"ball.vdb", "--iso", "1.5"}), 4);
+    EXPECT_EQ(statusOf({"ball.vdb", "--grid", "other"}), 3);
+    EXPECT_EQ(statusOf({"nothing.vdb"}), 3);
+    EXPECT_EQ(statusOf({"picture.png"}), 3);
+}
+
 TEST(Outline, RefusesBrokenFiles) {
     const auto replaced = [](std::string text, const std::string& from, const std::string& to) {
         const std::size_t at = text.find(from);
@@ -175,9 +229,9 @@ TEST(Outline, RefusesBrokenFiles) {
         {"a.obj", replaced(kCylinder, "rat bezier", "cardinal"), "cardinal"},
         {"a.obj", replaced(kCylinder, "parm u 0 1", "parm u 1 0"), "descends"},
         {"a.obj", replaced(kCylinder, "parm u 0 1", "trim 0 1 1"), "trims"},
-        {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "only faces"},
+        {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "the mesh is flat", 4},
         {"a.obj", "surf 0 1 0 1 1 2 3 4\n", "line 1"},
-        {"a.txt", kFlatPatch, "expected .bpt or .obj"},
+        {"a.txt", kFlatPatch, "expected a .vdb, free-form surfaces (.bpt, .obj), a mesh"},
     };
     for (const Broken& broken : all) {
         const TemporaryFolder folder;

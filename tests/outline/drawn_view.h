@@ -2,6 +2,7 @@
 
 #include "outline/exact_sheets.h"
 #include "outline/page_view.h"
+#include "outline/patch_scene.h"
 #include "outline/refine_point.h"
 #include "outline/surface_curves.h"
 #include "outline/visible_pieces.h"
@@ -33,7 +34,7 @@ inline DrawnView draw(const std::vector<BezierPatch>& patches, const OutlineOpti
     const CurveSampling sampling{.flatness = 0.25 * options.tolerance, .size = drawn.size};
     const auto curves = surfaceCurves(patches, drawn.seen, options, sampling, silentProgress());
     drawn.pieces =
-        visiblePieces(curves, drawn.seen, Sheets(drawn.seen), sampling, silentProgress());
+        visiblePieces(curves, PatchScene(drawn.seen, drawn.size), sampling, silentProgress());
     return drawn;
 }
 

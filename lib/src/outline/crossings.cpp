@@ -1,7 +1,5 @@
 #include "outline/crossings.h"
 
-#include "outline/refine_point.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -16,6 +14,11 @@ struct Segment {
 
 bool occludes(const Curve& curve) {
     return curve.kind == OutlineKind::Contour || curve.kind == OutlineKind::Boundary;
+}
+
+// A curve that a fold of its surface may pass.
+bool liesOnSurface(const Curve& curve) {
+    return curve.kind == OutlineKind::Intersection || curve.kind == OutlineKind::Isophote;
 }
 
 /// Segments of all curves by the squares of the page that they touch.
@@ -57,10 +60,10 @@ class SegmentGrid {
 
 class CrossingSearch {
   public:
-    CrossingSearch(std::span<const Curve> curves, std::span<const ViewPatch> patches,
+    CrossingSearch(std::span<const Curve> curves, CurveReader& reader,
                    const CurveSampling& sampling)
         : mCurves(curves),
-          mPatches(patches),
+          mReader(reader),
           mSize(sampling.size),
           mFlatness(sampling.flatness),
           mGrid(curves, sampling.size / 200),
@@ -75,7 +78,7 @@ class CrossingSearch {
             }
         }
         for (std::size_t c = 0; c < mCurves.size(); ++c) {
-            if (mCurves[c].kind == OutlineKind::Intersection) passFolds(c);
+            if (liesOnSurface(mCurves[c])) passFolds(c);
             if (mCurves[c].closed || mCurves[c].points.empty()) continue;
             touch(c, mCurves[c].points.front());
             touch(c, mCurves[c].points.back());
@@ -135,8 +138,8 @@ class CrossingSearch {
         const double area = ax * by - ay * bx;
         // Parameters go along chords nearly evenly: each round leaves a small part of the error.
         for (int round = 0; round < 12; ++round) {
-            at.onA = pointBetween(mPatches, *a.from, *a.to, at.alongA);
-            at.onB = pointBetween(mPatches, *b.from, *b.to, at.alongB);
+            at.onA = mReader.between(*a.from, *a.to, at.alongA);
+            at.onB = mReader.between(*b.from, *b.to, at.alongB);
             const double gx = at.onB.x - at.onA.x, gy = at.onB.y - at.onA.y;
             if (std::hypot(gx, gy) < 1e-3 * mFlatness) break;
             at.alongA = std::clamp(at.alongA + (gx * by - gy * bx) / area, 0.0, 1.0);
@@ -150,7 +153,7 @@ class CrossingSearch {
         const double dx = ends.to->x - ends.from->x, dy = ends.to->y - ends.from->y;
         const double square = dx * dx + dy * dy;
         for (int round = 0; round < 12; ++round) {
-            const CurvePoint q = pointBetween(mPatches, *ends.from, *ends.to, share);
+            const CurvePoint q = mReader.between(*ends.from, *ends.to, share);
             const double behind = ((p.x - q.x) * dx + (p.y - q.y) * dy) / square;
             share = std::clamp(share + behind, 0.0, 1.0);
             if (behind * behind * square < 1e-6 * mFlatness * mFlatness) break;
@@ -158,31 +161,28 @@ class CrossingSearch {
         return share;
     }
 
-    // Where an intersection goes over a fold of one of its surfaces, by halving.
+    // Where a curve goes over a fold of one of its surfaces, by halving.
     void passFolds(std::size_t curve) {
         const auto& points = mCurves[curve].points;
         for (std::size_t i = 0; i + 1 < points.size(); ++i) {
             const CurvePoint &a = points[i], &b = points[i + 1];
             if (a.patch != b.patch || a.other != b.other) continue;
             for (const bool isOther : {false, true}) {
-                if ((foldAt(a, isOther) >= 0) == (foldAt(b, isOther) >= 0)) continue;
+                if ((mReader.foldAt(a, isOther) >= 0) == (mReader.foldAt(b, isOther) >= 0))
+                    continue;
                 double low = 0, high = 1;
                 CurvePoint middle = a;
                 while (high - low > 1e-6) {
                     const double share = 0.5 * (low + high);
-                    middle = pointBetween(mPatches, a, b, share);
-                    const bool isLow = (foldAt(middle, isOther) >= 0) == (foldAt(a, isOther) >= 0);
+                    middle = mReader.between(a, b, share);
+                    const bool isLow =
+                        (mReader.foldAt(middle, isOther) >= 0) == (mReader.foldAt(a, isOther) >= 0);
                     (isLow ? low : high) = share;
                 }
                 mPlaces[curve].push_back(static_cast<double>(i) + low);
                 touch(curve, middle);
             }
         }
-    }
-
-    double foldAt(const CurvePoint& p, bool isOther) const {
-        const auto index = static_cast<std::size_t>(isOther ? p.other : p.patch);
-        return evaluate(mPatches[index].f, isOther ? p.s : p.u, isOther ? p.t : p.v).value;
     }
 
     // Curves that pass through the end of another one, in space.
@@ -210,7 +210,7 @@ class CrossingSearch {
     }
 
     std::span<const Curve> mCurves;
-    std::span<const ViewPatch> mPatches;
+    CurveReader& mReader;
     double mSize, mFlatness;
     SegmentGrid mGrid;
     std::vector<CurvePlaces> mPlaces;
@@ -218,10 +218,9 @@ class CrossingSearch {
 
 }  // namespace
 
-std::vector<CurvePlaces> crossings(std::span<const Curve> curves,
-                                   std::span<const ViewPatch> patches,
+std::vector<CurvePlaces> crossings(std::span<const Curve> curves, CurveReader& reader,
                                    const CurveSampling& sampling) {
-    return CrossingSearch(curves, patches, sampling).search();
+    return CrossingSearch(curves, reader, sampling).search();
 }
 
 }  // namespace bandvox

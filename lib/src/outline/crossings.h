@@ -1,7 +1,6 @@
 #pragma once
 
-#include "outline/curve.h"
-#include "outline/view_patch.h"
+#include "outline/curve_scene.h"
 
 #include <span>
 #include <vector>
@@ -13,9 +12,8 @@ using CurvePlaces = std::vector<double>;
 
 /// Where curves may become hidden, or seen: where one passes behind another one on the page that
 /// ends or folds a surface, where both are in the same place, where one ends on another, and where
-/// an intersection goes over a fold: there both touch on the page and do not cross.
-std::vector<CurvePlaces> crossings(std::span<const Curve> curves,
-                                   std::span<const ViewPatch> patches,
+/// an intersection or an isophote goes over a fold: there both touch on the page and do not cross.
+std::vector<CurvePlaces> crossings(std::span<const Curve> curves, CurveReader& reader,
                                    const CurveSampling& sampling);
 
 }  // namespace bandvox

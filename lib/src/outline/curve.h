@@ -11,12 +11,22 @@ namespace bandvox {
 
 /// What keeps a curve's points on it between two known ones.
 enum class CurveRule {
-    Fold,    ///< F = 0 on the patch
-    Border,  ///< a straight line of the patch's parameters
-    Meeting  ///< in two patches
+    Fold,            ///< F = 0 on the patch
+    Border,          ///< a straight line of the patch's parameters
+    Meeting,         ///< in two patches
+    VolumeFold,      ///< ∇f~·v = 0 on a volume's surface
+    VolumeMeeting,   ///< in the surfaces of two volumes
+    VolumeIsophote,  ///< of one angle to the light on a volume's surface
 };
 
-/// A point of a curve on patches, where the view sees it.
+/// Whether a rule is one of volumes.
+inline bool isOfVolume(CurveRule rule) {
+    return rule >= CurveRule::VolumeFold;
+}
+
+/// A point of a curve on patches, where the view sees it. Of a curve on a volume's surface `patch`
+/// is the number of that volume, `other` that of the other one of an intersection, (u, v, s) the
+/// place in index coordinates, and t the cosine that makes an isophote.
 struct CurvePoint {
     double x = 0, y = 0, z = 0;  ///< on the page, and depth
     double tx = 1, ty = 0;       ///< direction of the curve on the page, length 1, without a sign

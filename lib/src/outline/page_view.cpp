@@ -47,43 +47,59 @@ double rowTimes(const std::array<double, 4>& row, const std::array<double, 4>& p
     return row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3] * p[3];
 }
 
-void settle(ViewMatrix& view, const std::vector<BezierPatch>& patches, double size) {
+void settle(ViewMatrix& view, const PageContent& content, double size, double turn) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const BezierPatch& patch : patches) {
-        for (const auto& p : patch.control) {
-            const double w = rowTimes(view[3], p);
-            if (!(w > 0)) {
-                throw Error(ErrorKind::Usage,
-                            "a surface reaches behind the eye; expected all of it before the eye: "
-                            "an eye that is farther away, or an orthographic view");
-            }
-            const double depth = rowTimes(view[2], p) / w;
-            low = std::min(low, depth);
-            high = std::max(high, depth);
+    for (const auto& p : content.enclosing) {
+        const double w = rowTimes(view[3], p);
+        if (!(w > 0)) {
+            throw Error(ErrorKind::Usage,
+                        "a surface reaches behind the eye; expected all of it before the eye: "
+                        "an eye that is farther away, or an orthographic view");
         }
+        const double depth = rowTimes(view[2], p) / w;
+        low = std::min(low, depth);
+        high = std::max(high, depth);
     }
     const double scale = size / std::max(high - low, 1e-9 * std::max(std::abs(high), 1e-300));
     const double middle = 0.5 * (low + high);
-    constexpr double kTurnX = 2.3e-7, kTurnY = 1.7e-7;
+    // In no direction that anything is likely to have.
+    const double turnX = 0.804176 * turn, turnY = 0.594391 * turn;
     for (std::size_t c = 0; c < 4; ++c) {
         view[2][c] = scale * (view[2][c] - middle * view[3][c]);
-        view[0][c] += kTurnX * view[2][c];
-        view[1][c] += kTurnY * view[2][c];
+        view[0][c] += turnX * view[2][c];
+        view[1][c] += turnY * view[2][c];
     }
 }
 
 }  // namespace
 
-ViewMatrix pageView(const std::vector<BezierPatch>& patches, const OutlineOptions& options) {
+PageContent contentOf(const std::vector<BezierPatch>& patches) {
+    PageContent content{framedPoints(patches), {}};
+    for (const BezierPatch& patch : patches) {
+        content.enclosing.insert(content.enclosing.end(), patch.control.begin(),
+                                 patch.control.end());
+    }
+    return content;
+}
+
+Camera pageCamera(const PageContent& content, const OutlineOptions& options) {
     // The camera's pixels only serve for the shape of the picture.
     const double wide = options.width - 2 * options.margin;
     const double high = options.height - 2 * options.margin;
     const double pixels = 20000 / std::max(wide, high);
-    const Camera camera(options.camera, static_cast<int>(std::ceil(pixels * wide)),
-                        static_cast<int>(std::ceil(pixels * high)), framedPoints(patches));
-    ViewMatrix view = viewOf(camera, options);
-    settle(view, patches, std::max(options.width, options.height));
+    return {options.camera, static_cast<int>(std::ceil(pixels * wide)),
+            static_cast<int>(std::ceil(pixels * high)), content.framed};
+}
+
+ViewMatrix pageView(const PageContent& content, const OutlineOptions& options, double turn) {
+    ViewMatrix view = viewOf(pageCamera(content, options), options);
+    settle(view, content, std::max(options.width, options.height), turn);
     return view;
+}
+
+ViewMatrix pageView(const std::vector<BezierPatch>& patches, const OutlineOptions& options) {
+    constexpr double kTurn = 2.86007e-7;
+    return pageView(contentOf(patches), options, kTurn);
 }
 
 }  // namespace bandvox

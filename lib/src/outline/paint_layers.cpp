@@ -12,7 +12,7 @@
 namespace bandvox {
 
 std::string PaintLayer::kindName() const {
-    constexpr std::array kNames{"contour", "boundary", "crease", "intersection"};
+    constexpr std::array kNames{"contour", "boundary", "crease", "intersection", "isophote"};
     return kNames[static_cast<std::size_t>(kind)];
 }
 

@@ -1,5 +1,7 @@
 #include "outline/view_patch.h"
 
+#include <bandvox/core/parallel.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -127,6 +129,16 @@ std::array<double, 2> foldDirection(const ViewPoint& p) {
     if (!(length > 0)) return {1, 0};
     if (along >= across) return {p.xu / along, p.yu / along};
     return {p.xv / across, p.yv / across};
+}
+
+std::vector<ViewPatch> seenBy(const ViewMatrix& view, const std::vector<BezierPatch>& patches,
+                              double size) {
+    std::vector<ViewPatch> seen(patches.size());
+    parallelFor(static_cast<std::int64_t>(seen.size()), [&](std::int64_t i) {
+        const auto k = static_cast<std::size_t>(i);
+        seen[k] = seenBy(view, patches[k], size);
+    });
+    return seen;
 }
 
 }  // namespace bandvox

@@ -39,6 +39,10 @@ struct ViewPatch {
 /// `size`: of the page, to tell lengths that are as good as 0.
 ViewPatch seenBy(const ViewMatrix& view, const BezierPatch& patch, double size);
 
+/// The same of many.
+std::vector<ViewPatch> seenBy(const ViewMatrix& view, const std::vector<BezierPatch>& patches,
+                              double size);
+
 /// The point of a side at t, 0 to 1: the parameter along it.
 std::array<double, 2> onSide(int side, double t);
 

@@ -1,20 +1,15 @@
 #include "outline/visible_pieces.h"
 
 #include "outline/crossings.h"
-#include "outline/refine_point.h"
 
 #include <bandvox/core/parallel.h>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <memory>
 
 namespace bandvox {
 namespace {
-
-// A surface in front has to be nearer by this part of the page's size, since the curve's own
-// surface is met there, too, twice where it folds.
-constexpr double kDepthMargin = 1e-7;
 
 /// A curve by its length.
 class CurveRuler {
@@ -51,9 +46,8 @@ class CurveRuler {
 /// Finds out how much is in front of one curve.
 class CurveSight {
   public:
-    CurveSight(const Curve& curve, std::span<const ViewPatch> patches, const Sheets& sheets,
-               const CurveSampling& sampling)
-        : mCurve(curve), mPatches(patches), mSheets(sheets), mSampling(sampling), mRuler(curve) {}
+    CurveSight(const Curve& curve, const CurveScene& scene, const CurveSampling& sampling)
+        : mCurve(curve), mReader(scene.reader()), mSampling(sampling), mRuler(curve) {}
 
     std::vector<VisiblePiece> cut(const CurvePlaces& places) {
         std::vector<double> stops{0, mRuler.whole()};
@@ -80,13 +74,10 @@ class CurveSight {
         constexpr double kOnPoint = 1e-9;  // of the way
         if (share < kOnPoint) return mCurve.points[i];
         if (share > 1 - kOnPoint) return mCurve.points[i + 1];
-        return pointBetween(mPatches, mCurve.points[i], mCurve.points[i + 1], share);
+        return mReader->between(mCurve.points[i], mCurve.points[i + 1], share);
     }
 
-    int hiddenAt(double length) const {
-        const CurvePoint p = pointAt(length);
-        return mSheets.countBefore(p, kDepthMargin * mSampling.size);
-    }
+    int hiddenAt(double length) const { return mReader->countBefore(pointAt(length)); }
 
     void examine(double from, double to) {
         const double span = to - from;
@@ -102,17 +93,36 @@ class CurveSight {
             where.push_back(to - inward);
         }
         std::sort(where.begin(), where.end());
+        std::vector<int> hidden;
+        hidden.reserve(where.size());
+        for (const double length : where) hidden.push_back(hiddenAt(length));
+        if (isChance(hidden)) return add({from, to, mostFrequent(hidden)});
         double begin = from;
-        int hidden = hiddenAt(where[0]);
         for (std::size_t k = 1; k < where.size(); ++k) {
-            const int next = hiddenAt(where[k]);
-            if (next == hidden) continue;
-            const double change = changeBetween(where[k - 1], where[k], hidden);
-            add({begin, change, hidden});
+            if (hidden[k] == hidden[k - 1]) continue;
+            const double change = changeBetween(where[k - 1], where[k], hidden[k - 1]);
+            add({begin, change, hidden[k - 1]});
             begin = change;
-            hidden = next;
         }
-        add({begin, to, hidden});
+        add({begin, to, hidden.back()});
+    }
+
+    // Where a volume is seen edge-on, and as flat as is known, lines of sight tell now this, now
+    // that.
+    bool isChance(const std::vector<int>& hidden) const {
+        if (!isOfVolume(mCurve.points[0].rule)) return false;
+        int changes = 0;
+        for (std::size_t k = 1; k < hidden.size(); ++k) changes += hidden[k] != hidden[k - 1];
+        return changes > 1;
+    }
+
+    static int mostFrequent(const std::vector<int>& hidden) {
+        int best = hidden[0];
+        for (const int candidate : hidden) {
+            const auto count = std::count(hidden.begin(), hidden.end(), candidate);
+            if (count > std::count(hidden.begin(), hidden.end(), best)) best = candidate;
+        }
+        return best;
     }
 
     double changeBetween(double low, double high, int hiddenLow) const {
@@ -192,8 +202,7 @@ class CurveSight {
     }
 
     const Curve& mCurve;
-    std::span<const ViewPatch> mPatches;
-    const Sheets& mSheets;
+    std::unique_ptr<CurveReader> mReader;
     const CurveSampling& mSampling;
     CurveRuler mRuler;
     std::vector<Run> mRuns;
@@ -201,15 +210,14 @@ class CurveSight {
 
 }  // namespace
 
-std::vector<VisiblePiece> visiblePieces(std::span<const Curve> curves,
-                                        std::span<const ViewPatch> patches, const Sheets& sheets,
+std::vector<VisiblePiece> visiblePieces(std::span<const Curve> curves, const CurveScene& scene,
                                         const CurveSampling& sampling, Progress& progress) {
-    const std::vector<CurvePlaces> places = crossings(curves, patches, sampling);
+    const std::vector<CurvePlaces> places = crossings(curves, *scene.reader(), sampling);
     std::vector<std::vector<VisiblePiece>> parts(curves.size());
     parallelFor(static_cast<std::int64_t>(curves.size()), [&](std::int64_t i) {
         progress.throwIfInterrupted();
         const auto k = static_cast<std::size_t>(i);
-        parts[k] = CurveSight(curves[k], patches, sheets, sampling).cut(places[k]);
+        parts[k] = CurveSight(curves[k], scene, sampling).cut(places[k]);
     });
     std::vector<VisiblePiece> result;
     for (auto& some : parts) {

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "outline/curve.h"
-#include "outline/sheets.h"
+#include "outline/curve_scene.h"
 
 #include <bandvox/core/progress.h>
 
@@ -17,10 +16,9 @@ struct VisiblePiece {
 };
 
 /// Cuts curves where the number of surfaces in front of them changes. Each part is certified by
-/// lines of sight to the patches themselves, three or more; where these differ, the change is
+/// lines of sight to the surfaces themselves, three or more; where these differ, the change is
 /// searched for and is a cut, too.
-std::vector<VisiblePiece> visiblePieces(std::span<const Curve> curves,
-                                        std::span<const ViewPatch> patches, const Sheets& sheets,
+std::vector<VisiblePiece> visiblePieces(std::span<const Curve> curves, const CurveScene& scene,
                                         const CurveSampling& sampling, Progress& progress);
 
 }  // namespace bandvox

@@ -179,9 +179,10 @@ std::unique_ptr<Reconstruction> readLattice(const openvdb::FloatGrid::ConstPtr& 
                                             const std::optional<DensityMetadata>& metadata,
                                             const PictureOptions& options) {
     if (!metadata) return makeSplineReconstruction(grid, cacheBytes(options));
-    return readFiltered(grid, {{metadata->order, metadata->cutoff},
-                               std::max(metadata->tolerance, options.tolerance),
-                               cacheBytes(options)});
+    const double tolerance =
+        options.readsFinely ? options.tolerance : std::max(metadata->tolerance, options.tolerance);
+    return readFiltered(grid,
+                        {{metadata->order, metadata->cutoff}, tolerance, cacheBytes(options)});
 }
 
 SurfaceField readSurface(const DrawableGrid& drawable, double maximum,

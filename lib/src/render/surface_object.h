@@ -51,6 +51,8 @@ class SurfaceObject {
     std::string whyEmpty() const;
 
     std::unique_ptr<DensityProbe> probe() const;
+    /// Lines of sight in index coordinates. Not to be asked for if nothing is to be seen.
+    const RayMarch& march() const { return *mMarch; }
 
     /// Where a ray, 0 ≤ t ≤ `end`, enters the solid.
     std::optional<SurfaceHit> entry(const Ray& ray, double end, DensityProbe& probe) const;

@@ -8,10 +8,11 @@ namespace bandvox {
 
 /// What a line of a drawing is.
 enum class OutlineKind {
-    Contour,      ///< where a surface turns away from the eye
-    Boundary,     ///< where a surface ends
-    Crease,       ///< where two patches meet at an angle
-    Intersection  ///< where surfaces pass through each other
+    Contour,       ///< where a surface turns away from the eye
+    Boundary,      ///< where a surface ends
+    Crease,        ///< where two patches meet at an angle
+    Intersection,  ///< where surfaces pass through each other
+    Isophote       ///< of one angle between a surface and the light
 };
 
 /// A line of a drawing: cubic Bézier curves, one after the other.

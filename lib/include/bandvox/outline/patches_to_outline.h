@@ -2,21 +2,10 @@
 
 #include <bandvox/core/progress.h>
 #include <bandvox/outline/outline.h>
-#include <bandvox/render/camera.h>
+#include <bandvox/outline/outline_options.h>
 #include <bandvox/source/bezier_patch.h>
 
 namespace bandvox {
-
-/// How surfaces are drawn as lines.
-struct OutlineOptions {
-    CameraOptions camera;
-    double width = 200, height = 150;  ///< of the page, in any unit; > 0
-    double margin = 10;                ///< of the page that stays free, if the view is fitted
-    double tolerance = 0.01;           ///< distance of lines from the true ones, page units; > 0
-    double creaseAngle = 5;     ///< least angle between normals of a crease, degrees, 0 to 180
-    bool intersections = true;  ///< draw where surfaces pass through each other
-    bool hidden = true;         ///< keep lines that are behind something
-};
 
 /// Draws contours, boundaries, creases and intersections of surfaces as cubic Bézier curves, and
 /// finds out what is hidden: everything is computed on the surfaces themselves, none of it on

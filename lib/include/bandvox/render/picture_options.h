@@ -62,8 +62,10 @@ struct PictureOptions {
     bool allowEmpty = false;                   ///< let nothing be seen, instead of throwing
     TransportOptions transport;
     VolumeOptions volumes;
-    double tolerance = 5e-4;  ///< error of what is read between the nodes: of the density, and of
-                              ///< the gradient relative to a flat face's; 1e-6 to 0.1
+    double tolerance = 5e-4;   ///< error of what is read between the nodes: of the density, and of
+                               ///< the gradient relative to a flat face's; 1e-6 to 0.1
+    bool readsFinely = false;  ///< keep to it even if the lattice itself is known less well: what
+                               ///< is read then is smoother, but no more exact
     std::size_t cacheBytes = 0;  ///< memory for what is read between the nodes; 0: a quarter of
                                  ///< what is free, at most 2 GiB
     /// Called now and then, from the calling thread, with the picture as far as it is: first

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <bandvox/render/camera.h>
+
+#include <vector>
+
+namespace bandvox {
+
+/// How surfaces are drawn as lines.
+struct OutlineOptions {
+    CameraOptions camera;
+    double width = 200, height = 150;  ///< of the page, in any unit; > 0
+    double margin = 10;                ///< of the page that stays free, if the view is fitted
+    double tolerance = 0.01;           ///< distance of lines from the true ones, page units; > 0
+    double creaseAngle = 5;     ///< least angle between normals of a crease, degrees, 0 to 180
+    bool intersections = true;  ///< draw where surfaces pass through each other
+    bool hidden = true;         ///< keep lines that are behind something
+    /// Of volumes: lines where the cosine of the angle between the normal and the direction to the
+    /// light is one of these, between -1 and 1.
+    std::vector<double> isophotes;
+    /// Direction to the light, along the camera's right, up and back, of any length but 0.
+    openvdb::Vec3d light{-0.4, 0.7, 0.8};
+};
+
+}  // namespace bandvox
