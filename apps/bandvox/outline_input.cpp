@@ -51,12 +51,7 @@ void addPatches(CommandRun& run, const std::string& input, PatchModel& all) {
     run.say("read     " + input + ": " +
             formatCount(static_cast<std::int64_t>(model.patches.size()), "patch", "patches"));
     run.warn(model.warnings, ErrorKind::Input);
-    const int shift = static_cast<int>(all.objects.size());
-    for (BezierPatch& patch : model.patches) {
-        patch.object += shift;
-        all.patches.push_back(std::move(patch));
-    }
-    all.objects.insert(all.objects.end(), model.objects.begin(), model.objects.end());
+    all.append(std::move(model));
 }
 
 openvdb::FloatGrid::ConstPtr readVolume(CommandRun& run, const std::string& input,

@@ -283,13 +283,13 @@ def merge(
     progress: Optional[Progress] = None,
 ) -> Grid: ...
 def outline(
-    source: Union[Path, Patches],
+    source: Union[Path, Patches, Grid, Sequence[Union[Path, Patches, Grid]]],
     *,
     page: Sequence[float] = [200.0, 150.0],
     margin: Optional[float] = None,
     tolerance: float = 0.01,
     crease_angle: float = 5.0,
-    kinds: Sequence[str] = ["contour", "boundary", "crease", "intersection"],
+    kinds: Sequence[str] = ["contour", "boundary", "crease", "intersection", "isophote"],
     hidden: bool = True,
     stroke: float = 0.35,
     stroke_color: str = "#000000",
@@ -304,6 +304,9 @@ def outline(
     focal: float = 50.0,
     aperture: float = 41.2136,
     frame: float = 0.0,
+    iso: Optional[float] = None,
+    isophotes: Sequence[float] = [],
+    light: Sequence[float] = [-0.4, 0.7, 0.8],
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Drawing: ...

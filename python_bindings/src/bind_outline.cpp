@@ -1,4 +1,4 @@
-// Free-form surfaces as drawings of lines.
+// Free-form surfaces and volumes as drawings of lines.
 
 #include "arrays.h"
 #include "background.h"
@@ -6,11 +6,13 @@
 #include "camera_arguments.h"
 #include "choices.h"
 #include "errors.h"
+#include "grid_object.h"
 #include "patches_object.h"
 #include "solid_mesh.h"
 
 #include <bandvox/core/atomic_file.h>
 #include <bandvox/outline/patches_to_outline.h>
+#include <bandvox/outline/volumes_to_outline.h>
 #include <bandvox/outline/write_outline.h>
 #include <bandvox/source/read_patches.h>
 
@@ -24,6 +26,7 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace bandvox::python {
 
@@ -32,7 +35,8 @@ namespace py = pybind11;
 namespace {
 
 const std::vector<std::string>& lineKinds() {
-    static const std::vector<std::string> names{"contour", "boundary", "crease", "intersection"};
+    static const std::vector<std::string> names{"contour", "boundary", "crease", "intersection",
+                                                "isophote"};
     return names;
 }
 
@@ -116,30 +120,55 @@ void setPage(OutlineOptions& options, const std::array<double, 2>& page,
                                       "; expected 0 or more, and less than half the page");
 }
 
-std::shared_ptr<DrawingObject> draw(const py::object& source, const OutlineOptions& options,
+/// What is drawn: files of patches are read later, without the interpreter.
+struct DrawnSources {
+    PatchModel patches;
+    std::vector<OutlineVolume> volumes;
+    std::vector<std::filesystem::path> files;
+};
+
+void addSource(const py::handle& source, const std::optional<double>& iso, DrawnSources& sources) {
+    if (py::isinstance<PatchesObject>(source)) {
+        sources.patches.append(source.cast<const PatchesObject&>().model);
+    } else if (py::isinstance<FloatGridObject>(source)) {
+        const auto& grid = source.cast<const FloatGridObject&>().grid;
+        sources.volumes.push_back({grid, iso, grid->getName()});
+    } else if (isPath(py::reinterpret_borrow<py::object>(source))) {
+        sources.files.push_back(source.cast<std::filesystem::path>());
+    } else {
+        throw Error(ErrorKind::Usage, std::string("found a ") + Py_TYPE(source.ptr())->tp_name +
+                                          "; expected a file of patches, bandvox.Patches, a "
+                                          "bandvox.Grid, or a list of such");
+    }
+}
+
+DrawnSources sourcesOf(const py::object& source, const std::optional<double>& iso) {
+    DrawnSources sources;
+    if (py::isinstance<py::list>(source) || py::isinstance<py::tuple>(source)) {
+        for (const py::handle part : source) addSource(part, iso, sources);
+    } else {
+        addSource(source, iso, sources);
+    }
+    if (iso && sources.volumes.empty()) {
+        throw Error(ErrorKind::Usage, "iso is for grids, and there is none; expected one");
+    }
+    return sources;
+}
+
+std::shared_ptr<DrawingObject> draw(DrawnSources sources, const OutlineOptions& options,
                                     const std::vector<std::string>& kinds,
                                     const StrokeOptions& stroke, int threads,
                                     const py::object& progress) {
     std::vector<bool> isKept(lineKinds().size());
     for (const std::string& kind : kinds) isKept[choiceOf(kind, lineKinds(), "kinds")] = true;
-    const PatchModel* patches = nullptr;
-    std::filesystem::path path;
-    if (py::isinstance<PatchesObject>(source)) {
-        patches = &source.cast<const PatchesObject&>().model;
-    } else if (isPath(source)) {
-        path = source.cast<std::filesystem::path>();
-    } else {
-        throw Error(ErrorKind::Usage, std::string("found a ") + Py_TYPE(source.ptr())->tp_name +
-                                          "; expected a file or bandvox.Patches");
-    }
     auto drawing = std::make_shared<DrawingObject>();
     drawing->stroke = checked(stroke);
-    std::vector<std::string> warnings;
+    PatchModel& patches = sources.patches;
     drawing->outline = inBackground(progress, threads, [&](Progress& watched) {
-        if (patches != nullptr) return patchesToOutline(*patches, options, watched);
-        const PatchModel read = readPatches(path, watched);
-        warnings = read.warnings;
-        return patchesToOutline(read, options, watched);
+        for (const auto& file : sources.files) patches.append(readPatches(file, watched));
+        return sources.volumes.empty()
+                   ? patchesToOutline(patches, options, watched)
+                   : volumesToOutline(sources.volumes, patches, options, watched);
     });
     auto& paths = drawing->outline.paths;
     std::erase_if(
@@ -148,7 +177,7 @@ std::shared_ptr<DrawingObject> draw(const py::object& source, const OutlineOptio
         throw Error(ErrorKind::Result,
                     "the drawing is empty: it has no lines of these kinds; expected some");
     }
-    warn(warnings);
+    warn(patches.warnings);
     warn(drawing->outline.warnings);
     return drawing;
 }
@@ -180,7 +209,7 @@ void bindDrawing(py::module_& module) {
             [](const DrawnPath& self) {
                 return lineKinds()[static_cast<std::size_t>(self.path.kind)];
             },
-            "'contour', 'boundary', 'crease' or 'intersection'.")
+            "'contour', 'boundary', 'crease', 'intersection' or 'isophote'.")
         .def_readonly("object", &DrawnPath::object, "The name of the object that it belongs to.")
         .def_property_readonly(
             "hidden", [](const DrawnPath& self) { return self.path.hidden; },
@@ -222,16 +251,19 @@ void bindOutline(py::module_& module) {
            const std::vector<std::string>& kinds, bool hidden, double width, std::string color,
            double hiddenWidth, std::string hiddenColor, std::string dash, const py::object& eye,
            const py::object& lookat, const py::object& up, const py::object& from,
-           const std::string& camera, double focal, double aperture, double frame, int threads,
-           const py::object& progress) {
+           const std::string& camera, double focal, double aperture, double frame,
+           const std::optional<double>& iso, const std::vector<double>& isophotes,
+           const std::array<double, 3>& light, int threads, const py::object& progress) {
             OutlineOptions options;
+            options.isophotes = isophotes;
+            options.light = openvdb::Vec3d(light.data());
             setPage(options, page, margin);
             options.tolerance = tolerance;
             options.creaseAngle = creaseAngle;
             options.hidden = hidden;
             options.camera = cameraOf({eye, lookat, up, from, camera, focal, aperture, frame});
             return draw(
-                source, options, kinds,
+                sourcesOf(source, iso), options, kinds,
                 {width, hiddenWidth, std::move(color), std::move(hiddenColor), std::move(dash)},
                 threads, progress);
         },
@@ -245,11 +277,17 @@ void bindOutline(py::module_& module) {
         py::arg("eye") = py::none(), py::arg("lookat") = py::none(), py::arg("up") = py::none(),
         py::arg("from_") = py::none(), py::arg("camera") = "perspective",
         py::arg("focal") = standard.camera.focal, py::arg("aperture") = standard.camera.aperture,
-        py::arg("frame") = standard.camera.frame, py::arg("threads") = 0,
-        py::arg("progress") = py::none(),
-        R"(Draws free-form surfaces as lines; returns a Drawing.
+        py::arg("frame") = standard.camera.frame, py::arg("iso") = py::none(),
+        py::arg("isophotes") = standard.isophotes,
+        py::arg("light") =
+            std::array<double, 3>{standard.light[0], standard.light[1], standard.light[2]},
+        py::arg("threads") = 0, py::arg("progress") = py::none(),
+        R"(Draws free-form surfaces and volumes as lines; returns a Drawing.
 
-source: Patches, or a .bpt or .obj file of them. page: width and height, millimetres; margin: what
+source: Patches, a .bpt or .obj file of them, a Grid, or a list of such. iso: the value of grids
+that is the surface, by default as they say, else 0.5, or 0 of a level set. isophotes: of grids,
+lines where the cosine of the angle between the normal and the direction to the light is one of
+these; light: along the camera's right, up and back. page: width and height, millimetres; margin: what
 stays free. tolerance: how far lines may be from the true ones, millimetres. crease_angle: patches
 that meet at more have a line between, degrees. kinds: which lines are drawn. hidden: keep those
 behind something. stroke, hidden_stroke: widths, millimetres; stroke_color, hidden_color: as in CSS;

@@ -125,6 +125,30 @@ def test_the_options_are_those_of_the_command(drawing):
         bandvox.outline(1.5)
 
 
+def test_grids_are_drawn_by_their_contours():
+    ball = bandvox.bandlimit("shape:sphere", resolution=48)
+    view = {"camera": "orthographic", "eye": (0, 0, 5), "lookat": (0, 0, 0), "frame": 4,
+            "page": (100, 100), "margin": 0}
+    found = bandvox.outline(ball, **view)
+    assert [(path.kind, path.closed, path.hidden) for path in found.paths] == [("contour", True, 0)]
+    # 25 mm to a unit; the surface of the filtered ball is a little within it.
+    radii = np.linalg.norm(found.paths[0].points[::3] - 50, axis=1) / 25
+    assert np.ptp(radii) < 1e-3 and 0.98 < radii.mean() < 1
+    smaller = bandvox.outline(ball, iso=0.9, **view)
+    assert np.linalg.norm(smaller.paths[0].points[0] - 50) / 25 < radii.min()
+    lit = bandvox.outline(ball, isophotes=[0.5], light=(0, 0, 1), **view)
+    # The normal is at 60 degrees to the light, which is behind the eye.
+    ring = [path for path in lit.paths if path.kind == "isophote" and path.hidden == 0]
+    lengths = np.linalg.norm(ring[0].points[::3] - 50, axis=1) / 25
+    np.testing.assert_allclose(lengths, np.sqrt(0.75) * radii.mean(), atol=2e-3)
+    both = bandvox.outline([ball, bandvox.Patches.read(TEAPOT)], up=(0, 0, 1))
+    assert len({path.object for path in both.paths}) == 2
+    with pytest.raises(bandvox.UsageError, match="iso is for grids"):
+        bandvox.outline(TEAPOT, iso=0.5)
+    with pytest.raises(bandvox.UsageError, match="found a int"):
+        bandvox.outline([ball, 3])
+
+
 def test_a_cylinder_seen_from_the_side_is_a_rectangle(cylinder):
     found = bandvox.outline(cylinder, camera="orthographic", eye=(9, 9, 1), lookat=(0, 0, 1),
                             up=(0, 0, 1), frame=4, page=(100, 100), margin=0)

@@ -1,6 +1,7 @@
 #include <bandvox/source/bezier_patch.h>
 
 #include <span>
+#include <utility>
 
 namespace bandvox {
 namespace {
@@ -85,6 +86,16 @@ PatchJet evaluate(const BezierPatch& patch, double u, double v) {
         jet.dvv[c] = (svv.value[c] - 2 * sv.value[3] * jet.dv[c] - svv.value[3] * p) / w;
     }
     return jet;
+}
+
+void PatchModel::append(PatchModel other) {
+    const int shift = static_cast<int>(objects.size());
+    for (BezierPatch& patch : other.patches) {
+        patch.object += shift;
+        patches.push_back(std::move(patch));
+    }
+    objects.insert(objects.end(), other.objects.begin(), other.objects.end());
+    warnings.insert(warnings.end(), other.warnings.begin(), other.warnings.end());
 }
 
 BezierPatch restricted(const BezierPatch& patch, double u0, double u1, double v0, double v1) {

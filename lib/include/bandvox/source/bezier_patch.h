@@ -44,6 +44,9 @@ struct PatchModel {
     std::vector<BezierPatch> patches;
     std::vector<std::string> objects;   ///< at least one if there are patches
     std::vector<std::string> warnings;  ///< what a reader left out
+
+    /// Adds the patches, objects and warnings of another model.
+    void append(PatchModel other);
 };
 
 }  // namespace bandvox
