@@ -149,6 +149,17 @@ TEST_F(Fit, LeavesDetailAway) {
     EXPECT_NE(beyond.err.find("--levels is 1..99"), std::string::npos) << beyond.err;
 }
 
+TEST_F(Fit, WarnsOfASurfaceThatGoesFarBeyondItsValues) {
+    writeText(*sFolder / "cliff.csv", tableOfHeights() + "0.5,0.5,1,0,0,0\n0.50001,0.5,2,0,0,0\n");
+    const RunResult warned = fit({"cliff.csv", "-o", "cliff.npy", "--samples", "5"});
+    EXPECT_EQ(warned.status, 0) << warned.err;
+    EXPECT_NE(warned.err.find("warning: the surface: it goes beyond the values"), std::string::npos)
+        << warned.err;
+    EXPECT_EQ(fit({"cliff.csv", "-o", "no.npy", "--samples", "5", "--strict"}).status, 4);
+    const RunResult smooth = fit({"heights.csv", "-o", "smooth.npy", "--samples", "5", "--strict"});
+    EXPECT_EQ(smooth.status, 0) << smooth.err;
+}
+
 TEST_F(Fit, SaysIfTheToleranceIsNotReached) {
     const RunResult result =
         fit({"heights.csv", "-o", "not.bpt", "--max-level", "1", "--tolerance", "1e-9"});

@@ -279,6 +279,32 @@ TEST(FitSurface, RefusesARangeThatIsNoNumber) {
     EXPECT_THROW(fitSurface(points), Error);
 }
 
+TEST(FitSurface, TellsWhatTheSumOfTheLevelsLeaves) {
+    // Of values far from 0 the sum keeps less than its levels do one by one.
+    for (const double offset : {0.0, 1e3, 1e6}) {
+        const ScatteredPoints points = sampled(
+            randomPlaces(400, 9), [&](double x, double y) { return offset + 0.01 * bump(x, y); });
+        const auto [low, high] = std::minmax_element(points.values.begin(), points.values.end());
+        const SurfaceFit fit = fitSurface(points);
+        const double left = largestResidual(fit.sum(), points) / (*high - *low);
+        EXPECT_NEAR(fit.report.back().largest, left, 1e-9 * left) << offset;
+        EXPECT_EQ(left > 1e-12, offset > 0) << offset;
+    }
+}
+
+TEST(FitSurface, NamesTheColumnInWhichDuplicatesDisagree) {
+    ScatteredPoints points;
+    points.x = {0, 1, 0, 1};
+    points.y = {0, 0, 1, 0};
+    points.columns = 2;
+    points.values = {1, 2, 2, 3, 1, 4, 2, 9};
+    const std::string numbered = inputErrorOf([&] { fitSurface(points); });
+    EXPECT_NE(numbered.find(" in value 2;"), std::string::npos) << numbered;
+    points.names = {"height", "heat"};
+    const std::string named = inputErrorOf([&] { fitSurface(points); });
+    EXPECT_NE(named.find(" in heat;"), std::string::npos) << named;
+}
+
 TEST(FitSurface, AveragesDuplicatesOrRefusesThem) {
     ScatteredPoints points = sampled(franke33(), bump);
     points.x.push_back(points.x[4]);

@@ -107,6 +107,16 @@ TEST(PatchSolid, StandsAHeightFieldOnItsBase) {
         EXPECT_TRUE(solid.report.holes.empty());
     }
     EXPECT_EQ(kindOf({top}, {.base = 1.5}), ErrorKind::Usage);
+    // A bowl that goes down to a quarter of what its middle control point does.
+    BezierPatch bowl{.degreeU = 2, .degreeV = 2};
+    for (int i = 0; i <= 2; ++i) {
+        for (int j = 0; j <= 2; ++j) {
+            bowl.control.push_back({0.5 * i, 0.5 * j, i == 1 && j == 1 ? -1.0 : 0.0, 1});
+        }
+    }
+    const PatchSolid above = makePatchSolid("bowl", {bowl}, {.base = -0.3});
+    EXPECT_NEAR(above.source->volume(), 0.3 - 1.0 / 9, 1e-9);
+    EXPECT_EQ(kindOf({bowl}, {.base = -0.24}), ErrorKind::Usage);
     EXPECT_EQ(kindOf(spherePatches(Vec3d(0), 1), {.base = -2.0}), ErrorKind::Usage);
     EXPECT_EQ(kindOf(cylinderPatches(0.5, 2), {.base = -2.0}), ErrorKind::Usage);
 }
