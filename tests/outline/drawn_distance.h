@@ -1,7 +1,7 @@
 #pragma once
 
-#include "outline/page_view.h"
-#include "outline/surface_curves.h"
+#include "outline/drawing/page_view.h"
+#include "outline/patches/surface_curves.h"
 
 #include <bandvox/outline/patches_to_outline.h>
 

@@ -1,11 +1,11 @@
 #pragma once
 
+#include "outline/drawing/page_view.h"
+#include "outline/drawing/visible_pieces.h"
 #include "outline/exact_sheets.h"
-#include "outline/page_view.h"
-#include "outline/patch_scene.h"
-#include "outline/refine_point.h"
-#include "outline/surface_curves.h"
-#include "outline/visible_pieces.h"
+#include "outline/patches/patch_scene.h"
+#include "outline/patches/refine_point.h"
+#include "outline/patches/surface_curves.h"
 
 #include <bandvox/core/parallel.h>
 

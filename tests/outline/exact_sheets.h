@@ -1,6 +1,6 @@
 #pragma once
 
-#include "outline/view_patch.h"
+#include "outline/patches/view_patch.h"
 
 #include <algorithm>
 #include <array>

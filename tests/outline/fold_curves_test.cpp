@@ -1,9 +1,9 @@
 // Contours on patches: nothing is missed, all of it is exact, and cusps are counted right.
 
-#include "outline/fold_curves.h"
+#include "outline/patches/fold_curves.h"
 
-#include "outline/border_curves.h"
-#include "outline/join_curves.h"
+#include "outline/drawing/join_curves.h"
+#include "outline/patches/border_curves.h"
 #include "outline/sample_surfaces.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // Where surfaces pass through each other: exact, closed or up to a border, and nothing is missed.
 
-#include "outline/meeting_curves.h"
+#include "outline/patches/meeting_curves.h"
 
-#include "outline/meeting_branches.h"
-#include "outline/page_view.h"
+#include "outline/drawing/page_view.h"
+#include "outline/patches/meeting_branches.h"
 #include "outline/scenes.h"
 
 #include <gtest/gtest.h>

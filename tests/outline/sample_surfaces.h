@@ -1,6 +1,6 @@
 #pragma once
 
-#include "outline/view_patch.h"
+#include "outline/patches/view_patch.h"
 
 #include <bandvox/source/bezier_patch.h>
 

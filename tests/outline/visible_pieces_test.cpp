@@ -1,6 +1,6 @@
 // What is hidden, against exact lines of sight; every free end has to have a reason.
 
-#include "outline/visible_pieces.h"
+#include "outline/drawing/visible_pieces.h"
 
 #include "outline/drawn_view.h"
 #include "outline/scenes.h"

@@ -1,6 +1,6 @@
 // Intersections and isophotes of volumes against closed forms.
 
-#include "outline/volume_equations.h"
+#include "outline/volumes/volume_equations.h"
 
 #include "outline/drawn_distance.h"
 #include "outline/volume_shapes.h"

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "outline/draw_curves.h"
+#include "outline/drawing/draw_curves.h"
+#include "outline/drawing/visible_pieces.h"
 #include "outline/drawn_view.h"
-#include "outline/visible_pieces.h"
-#include "outline/volume_drawing.h"
+#include "outline/volumes/volume_drawing.h"
 
 #include <bandvox/core/parallel.h>
 

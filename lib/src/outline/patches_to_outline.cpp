@@ -1,7 +1,7 @@
-#include "outline/draw_curves.h"
-#include "outline/page_view.h"
-#include "outline/patch_scene.h"
-#include "outline/surface_curves.h"
+#include "outline/drawing/draw_curves.h"
+#include "outline/drawing/page_view.h"
+#include "outline/patches/patch_scene.h"
+#include "outline/patches/surface_curves.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/outline/patches_to_outline.h>

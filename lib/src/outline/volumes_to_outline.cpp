@@ -1,5 +1,5 @@
-#include "outline/draw_curves.h"
-#include "outline/volume_drawing.h"
+#include "outline/drawing/draw_curves.h"
+#include "outline/volumes/volume_drawing.h"
 
 #include <bandvox/outline/volumes_to_outline.h>
 

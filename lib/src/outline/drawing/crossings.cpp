@@ -1,0 +1,226 @@
+#include "outline/drawing/crossings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+
+namespace bandvox {
+namespace {
+
+struct Segment {
+    std::uint32_t curve, index;
+};
+
+bool occludes(const Curve& curve) {
+    return curve.kind == OutlineKind::Contour || curve.kind == OutlineKind::Boundary;
+}
+
+// A curve that a fold of its surface may pass.
+bool liesOnSurface(const Curve& curve) {
+    return curve.kind == OutlineKind::Intersection || curve.kind == OutlineKind::Isophote;
+}
+
+/// Segments of all curves by the squares of the page that they touch.
+class SegmentGrid {
+  public:
+    SegmentGrid(std::span<const Curve> curves, double cell) : mCurves(curves), mCell(cell) {
+        for (std::uint32_t c = 0; c < curves.size(); ++c) {
+            for (std::uint32_t i = 0; i + 1 < curves[c].points.size(); ++i) add({c, i});
+        }
+    }
+
+    const CurvePoint& start(const Segment& s) const { return mCurves[s.curve].points[s.index]; }
+    const CurvePoint& end(const Segment& s) const { return mCurves[s.curve].points[s.index + 1]; }
+    const std::unordered_map<std::uint64_t, std::vector<Segment>>& cells() const { return mCells; }
+
+    std::int64_t indexOf(double x) const {
+        return static_cast<std::int64_t>(std::floor(x / mCell));
+    }
+    static std::uint64_t key(std::int64_t i, std::int64_t j) {
+        return static_cast<std::uint64_t>(i) << 32U ^ (static_cast<std::uint64_t>(j) & 0xFFFFFFFFU);
+    }
+
+  private:
+    void add(const Segment& s) {
+        const CurvePoint& a = start(s);
+        const CurvePoint& b = end(s);
+        const std::int64_t i1 = indexOf(std::max(a.x, b.x)), j1 = indexOf(std::max(a.y, b.y));
+        for (std::int64_t i = indexOf(std::min(a.x, b.x)); i <= i1; ++i) {
+            for (std::int64_t j = indexOf(std::min(a.y, b.y)); j <= j1; ++j) {
+                mCells[key(i, j)].push_back(s);
+            }
+        }
+    }
+
+    std::span<const Curve> mCurves;
+    double mCell;
+    std::unordered_map<std::uint64_t, std::vector<Segment>> mCells;
+};
+
+class CrossingSearch {
+  public:
+    CrossingSearch(std::span<const Curve> curves, CurveReader& reader,
+                   const CurveSampling& sampling)
+        : mCurves(curves),
+          mReader(reader),
+          mSize(sampling.size),
+          mFlatness(sampling.flatness),
+          mGrid(curves, sampling.size / 200),
+          mPlaces(curves.size()) {}
+
+    std::vector<CurvePlaces> search() {
+        for (const auto& [key, segments] : mGrid.cells()) {
+            for (std::size_t a = 0; a < segments.size(); ++a) {
+                for (std::size_t b = a + 1; b < segments.size(); ++b) {
+                    cross(segments[a], segments[b]);
+                }
+            }
+        }
+        for (std::size_t c = 0; c < mCurves.size(); ++c) {
+            if (liesOnSurface(mCurves[c])) passFolds(c);
+            if (mCurves[c].closed || mCurves[c].points.empty()) continue;
+            touch(c, mCurves[c].points.front());
+            touch(c, mCurves[c].points.back());
+        }
+        for (CurvePlaces& places : mPlaces) {
+            std::sort(places.begin(), places.end());
+            places.erase(std::unique(places.begin(), places.end()), places.end());
+        }
+        return std::move(mPlaces);
+    }
+
+  private:
+    bool areNeighbours(const Segment& a, const Segment& b) const {
+        if (a.curve != b.curve) return false;
+        const std::uint32_t apart = a.index > b.index ? a.index - b.index : b.index - a.index;
+        const auto last = static_cast<std::uint32_t>(mCurves[a.curve].points.size()) - 2;
+        return apart <= 1 || (mCurves[a.curve].closed && apart >= last);
+    }
+
+    void cross(const Segment& a, const Segment& b) {
+        const Curve& first = mCurves[a.curve];
+        const Curve& second = mCurves[b.curve];
+        if ((!occludes(first) && !occludes(second)) || areNeighbours(a, b)) return;
+        const CurvePoint &p = mGrid.start(a), &q = mGrid.end(a);
+        const CurvePoint &r = mGrid.start(b), &s = mGrid.end(b);
+        const double ax = q.x - p.x, ay = q.y - p.y, bx = s.x - r.x, by = s.y - r.y;
+        const double area = ax * by - ay * bx;
+        if (area == 0) return;
+        const double alongA = ((r.x - p.x) * by - (r.y - p.y) * bx) / area;
+        const double alongB = ((r.x - p.x) * ay - (r.y - p.y) * ax) / area;
+        if (alongA < 0 || alongA > 1 || alongB < 0 || alongB > 1) return;
+        Crossing at{alongA, alongB, {}, {}};
+        if (!settle({&p, &q}, {&r, &s}, at)) return;
+        // Both are in the same place where a surface passes through a fold.
+        const double near = 1e-5 * mSize;
+        if (occludes(second) && at.onB.z < at.onA.z + near) {
+            mPlaces[a.curve].push_back(a.index + at.alongA);
+        }
+        if (occludes(first) && at.onA.z < at.onB.z + near) {
+            mPlaces[b.curve].push_back(b.index + at.alongB);
+        }
+    }
+
+    // A segment's ends.
+    struct Ends {
+        const CurvePoint *from, *to;
+    };
+    struct Crossing {
+        double alongA, alongB;  // shares of both segments
+        CurvePoint onA, onB;
+    };
+
+    // From where chords cross to where the curves do; false if that is beyond the segments.
+    bool settle(const Ends& a, const Ends& b, Crossing& at) const {
+        const double ax = a.to->x - a.from->x, ay = a.to->y - a.from->y;
+        const double bx = b.to->x - b.from->x, by = b.to->y - b.from->y;
+        const double area = ax * by - ay * bx;
+        // Parameters go along chords nearly evenly: each round leaves a small part of the error.
+        for (int round = 0; round < 12; ++round) {
+            at.onA = mReader.between(*a.from, *a.to, at.alongA);
+            at.onB = mReader.between(*b.from, *b.to, at.alongB);
+            const double gx = at.onB.x - at.onA.x, gy = at.onB.y - at.onA.y;
+            if (std::hypot(gx, gy) < 1e-3 * mFlatness) break;
+            at.alongA = std::clamp(at.alongA + (gx * by - gy * bx) / area, 0.0, 1.0);
+            at.alongB = std::clamp(at.alongB + (gx * ay - gy * ax) / area, 0.0, 1.0);
+        }
+        return std::hypot(at.onB.x - at.onA.x, at.onB.y - at.onA.y) < 2 * mFlatness;
+    }
+
+    // The share of a segment where the curve is nearest to a place, from that of the chord.
+    double shareNear(const Ends& ends, const CurvePoint& p, double share) const {
+        const double dx = ends.to->x - ends.from->x, dy = ends.to->y - ends.from->y;
+        const double square = dx * dx + dy * dy;
+        for (int round = 0; round < 12; ++round) {
+            const CurvePoint q = mReader.between(*ends.from, *ends.to, share);
+            const double behind = ((p.x - q.x) * dx + (p.y - q.y) * dy) / square;
+            share = std::clamp(share + behind, 0.0, 1.0);
+            if (behind * behind * square < 1e-6 * mFlatness * mFlatness) break;
+        }
+        return share;
+    }
+
+    // Where a curve goes over a fold of one of its surfaces, by halving.
+    void passFolds(std::size_t curve) {
+        const auto& points = mCurves[curve].points;
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+            const CurvePoint &a = points[i], &b = points[i + 1];
+            if (a.patch != b.patch || a.other != b.other) continue;
+            for (const bool isOther : {false, true}) {
+                if ((mReader.foldAt(a, isOther) >= 0) == (mReader.foldAt(b, isOther) >= 0))
+                    continue;
+                double low = 0, high = 1;
+                CurvePoint middle = a;
+                while (high - low > 1e-6) {
+                    const double share = 0.5 * (low + high);
+                    middle = mReader.between(a, b, share);
+                    const bool isLow =
+                        (mReader.foldAt(middle, isOther) >= 0) == (mReader.foldAt(a, isOther) >= 0);
+                    (isLow ? low : high) = share;
+                }
+                mPlaces[curve].push_back(static_cast<double>(i) + low);
+                touch(curve, middle);
+            }
+        }
+    }
+
+    // Curves that pass through the end of another one, in space.
+    void touch(std::size_t curve, const CurvePoint& p) {
+        const double reach = 2 * mFlatness;
+        const std::int64_t i = mGrid.indexOf(p.x), j = mGrid.indexOf(p.y);
+        for (int near = 0; near < 9; ++near) {
+            const auto found =
+                mGrid.cells().find(SegmentGrid::key(i + near % 3 - 1, j + near / 3 - 1));
+            if (found == mGrid.cells().end()) continue;
+            for (const Segment& segment : found->second) {
+                if (segment.curve == curve) continue;
+                const CurvePoint &a = mGrid.start(segment), &b = mGrid.end(segment);
+                const double dx = b.x - a.x, dy = b.y - a.y;
+                const double square = dx * dx + dy * dy;
+                if (!(square > 0)) continue;
+                const double share =
+                    std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / square, 0.0, 1.0);
+                const double away = std::hypot(a.x + share * dx - p.x, a.y + share * dy - p.y);
+                const double below = a.z + share * (b.z - a.z) - p.z;
+                if (away > reach || std::abs(below) > 0.02 * mSize) continue;
+                mPlaces[segment.curve].push_back(segment.index + shareNear({&a, &b}, p, share));
+            }
+        }
+    }
+
+    std::span<const Curve> mCurves;
+    CurveReader& mReader;
+    double mSize, mFlatness;
+    SegmentGrid mGrid;
+    std::vector<CurvePlaces> mPlaces;
+};
+
+}  // namespace
+
+std::vector<CurvePlaces> crossings(std::span<const Curve> curves, CurveReader& reader,
+                                   const CurveSampling& sampling) {
+    return CrossingSearch(curves, reader, sampling).search();
+}
+
+}  // namespace bandvox

@@ -1,0 +1,98 @@
+#include "outline/files/paint_layers.h"
+
+#include <bandvox/core/error.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <map>
+
+namespace bandvox {
+
+std::string PaintLayer::kindName() const {
+    constexpr std::array kNames{"contour", "boundary", "crease", "intersection", "isophote"};
+    return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::string PaintLayer::objectName(const Outline& outline) const {
+    const auto index = static_cast<std::size_t>(object);
+    if (index < outline.objects.size()) return outline.objects[index];
+    return "object " + std::to_string(object + 1);
+}
+
+std::vector<PaintLayer> paintLayers(const Outline& outline) {
+    using Key = std::array<int, 3>;  // object, visible, kind
+    std::map<Key, std::vector<const OutlinePath*>> sorted;
+    for (const OutlinePath& path : outline.paths) {
+        const Key key{path.object, path.hidden == 0 ? 1 : 0, static_cast<int>(path.kind)};
+        sorted[key].push_back(&path);
+    }
+    std::vector<PaintLayer> layers;
+    layers.reserve(sorted.size());
+    for (auto& [key, paths] : sorted) {
+        layers.push_back({key[0], key[1] == 1, static_cast<OutlineKind>(key[2]), std::move(paths)});
+    }
+    return layers;
+}
+
+std::string plainNumber(double value) {
+    std::array<char, 400> digits{};
+    constexpr int kDecimals = 4;
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
+                                   std::chars_format::fixed, kDecimals)
+                         .ptr;
+    std::string text(digits.data(), end);
+    while (text.ends_with('0')) text.pop_back();
+    if (text.ends_with('.')) text.pop_back();
+    return text == "-0" ? "0" : text;
+}
+
+std::array<double, 3> parsedColor(const std::string& color) {
+    const std::size_t digits = color.size() == 4 ? 1 : 2;
+    std::array<double, 3> result{};
+    bool isColor = (color.size() == 4 || color.size() == 7) && color.starts_with('#');
+    for (std::size_t c = 0; isColor && c < 3; ++c) {
+        const char* const begin = color.data() + 1 + c * digits;
+        int value = 0;
+        const auto read = std::from_chars(begin, begin + digits, value, 16);
+        isColor = read.ec == std::errc() && read.ptr == begin + digits && value >= 0;
+        result[c] = value / (digits == 1 ? 15.0 : 255.0);
+    }
+    if (isColor) return result;
+    throw Error(ErrorKind::Usage, "the colour is \"" + color +
+                                      "\"; expected one as #000000 or #000 for this kind of file");
+}
+
+std::vector<double> parsedDash(const std::string& dash) {
+    std::vector<double> lengths;
+    const char* at = dash.data();
+    const char* const end = at + dash.size();
+    bool isDash = true;
+    while (isDash && at != end) {
+        if (*at == ' ' || *at == ',') {
+            ++at;
+            continue;
+        }
+        double length = 0;
+        const auto read = std::from_chars(at, end, length);
+        isDash = read.ec == std::errc() && length >= 0 && std::isfinite(length);
+        at = read.ptr;
+        lengths.push_back(length);
+    }
+    const bool isSome = std::any_of(lengths.begin(), lengths.end(), [](double l) { return l > 0; });
+    if (isDash && isSome) return lengths;
+    throw Error(ErrorKind::Usage, "the dash is \"" + dash +
+                                      "\"; expected lengths as \"1.2 0.8\" for this kind of file");
+}
+
+void writeWhole(AtomicFile& file, const std::string& text) {
+    std::ofstream stream = file.open();
+    stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+    stream.flush();
+    if (stream) return;
+    throw Error(ErrorKind::Runtime, "\"" + file.target().string() + "\" could not be written");
+}
+
+}  // namespace bandvox

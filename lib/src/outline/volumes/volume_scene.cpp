@@ -1,0 +1,138 @@
+#include "outline/volumes/volume_scene.h"
+
+#include <cstddef>
+#include <map>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace bandvox {
+namespace {
+
+using openvdb::Vec3d;
+
+/// What one volume is asked.
+class VolumeReader {
+  public:
+    explicit VolumeReader(const VolumeSurface& surface)
+        : mSurface(surface), mProbe(surface.object->probe()), mContour(surface) {}
+
+    /// How often the surface is passed before a place of another one.
+    int countBefore(const CurvePoint& point) { return countUpTo(placeSeen(point), 0); }
+
+    /// The same for a place of its own, which is met, too: what is within half a voxel of it can
+    /// only be told by which side of the surface the line of sight comes from.
+    int countBeforeOwn(const CurvePoint& point) {
+        constexpr double kNear = 0.5;
+        const Vec3d place = placeSeen(point);
+        const SpacePoint space = mContour.at(place);
+        const bool isFold = point.rule == CurveRule::VolumeFold;
+        const bool comesFromInside = isFold ? space.turn > 0 : space.g < 0;
+        const int count = countUpTo(place, kNear);
+        return (count % 2 == 1) == comesFromInside ? count : count + 1;
+    }
+
+    double foldAt(const CurvePoint& point) { return mContour.side(placeSeen(point)); }
+
+  private:
+    // Places of the volume's own curves are known exactly.
+    Vec3d placeSeen(const CurvePoint& p) const {
+        if (isOfVolume(p.rule) && p.patch == mSurface.index) return {p.u, p.v, p.s};
+        return mSurface.view.placeOf({p.x, p.y, p.z});
+    }
+
+    int countUpTo(const Vec3d& place, double gap) {
+        // A place beyond the surface from which to go on.
+        constexpr double kBeyond = 0.02;
+        const double far = mSurface.size + (place - mSurface.middle).length();
+        const Vec3d start = mSurface.view.start(place, far);
+        const double length = (place - start).length(), end = length - gap;
+        const Vec3d direction = (place - start) / length;
+        const RayMarch& march = mSurface.object->march();
+        int count = 0;
+        for (double t = 0; t < end;) {
+            const Ray ray{start + t * direction, direction};
+            const auto hit = count % 2 == 0 ? march.firstHit(ray, *mProbe, end - t)
+                                            : march.firstExit(ray, *mProbe, end - t);
+            if (!hit) break;
+            ++count;
+            t += hit->t + kBeyond;
+        }
+        return count;
+    }
+
+    const VolumeSurface& mSurface;
+    std::unique_ptr<DensityProbe> mProbe;
+    ContourEquations mContour;
+};
+
+class VolumeSceneReader final : public CurveReader {
+  public:
+    VolumeSceneReader(std::span<const VolumeSurface> volumes, const CurveScene* patches,
+                      const Vec3d& light)
+        : mSurfaces(volumes), mLight(light) {
+        mVolumes.reserve(volumes.size());
+        for (const VolumeSurface& volume : volumes) mVolumes.emplace_back(volume);
+        if (patches != nullptr) mPatches = patches->reader();
+    }
+
+    CurvePoint between(const CurvePoint& a, const CurvePoint& b, double share) override {
+        if (!isOfVolume(a.rule) && !isOfVolume(b.rule)) return mPatches->between(a, b, share);
+        CurvePoint point = share < 0.5 ? a : b;
+        if (a.rule == b.rule && a.patch == b.patch) {
+            CurveEquations& equations = equationsOf(a);
+            const auto found = spaceBetween(equations, {a.u, a.v, a.s}, {b.u, b.v, b.s}, share);
+            if (found) point = equations.seen(*found);
+        }
+        point.corner = false;
+        return point;
+    }
+
+    int countBefore(const CurvePoint& point) override {
+        int count = mPatches ? mPatches->countBefore(point) : 0;
+        for (std::size_t k = 0; k < mVolumes.size(); ++k) {
+            const auto number = static_cast<int>(k);
+            const bool isOwn =
+                isOfVolume(point.rule) && (point.patch == number || point.other == number);
+            count += isOwn ? mVolumes[k].countBeforeOwn(point) : mVolumes[k].countBefore(point);
+        }
+        return count;
+    }
+
+    double foldAt(const CurvePoint& point, bool isOther) override {
+        if (!isOfVolume(point.rule)) return mPatches->foldAt(point, isOther);
+        const int number = isOther && point.other >= 0 ? point.other : point.patch;
+        return mVolumes[static_cast<std::size_t>(number)].foldAt(point);
+    }
+
+  private:
+    CurveEquations& equationsOf(const CurvePoint& p) {
+        auto& equations = mEquations[{static_cast<int>(p.rule), p.patch, p.other, p.t}];
+        const VolumeSurface& surface = mSurfaces[static_cast<std::size_t>(p.patch)];
+        if (equations) return *equations;
+        if (p.rule == CurveRule::VolumeMeeting) {
+            const VolumeSurface& other = mSurfaces[static_cast<std::size_t>(p.other)];
+            equations = std::make_unique<MeetingEquations>(surface, other);
+        } else if (p.rule == CurveRule::VolumeIsophote) {
+            equations = std::make_unique<IsophoteEquations>(surface, mLight, p.t);
+        } else {
+            equations = std::make_unique<ContourEquations>(surface);
+        }
+        return *equations;
+    }
+
+    std::span<const VolumeSurface> mSurfaces;
+    Vec3d mLight;
+    std::vector<VolumeReader> mVolumes;
+    std::unique_ptr<CurveReader> mPatches;
+    // By rule, volumes and cosine.
+    std::map<std::tuple<int, int, int, double>, std::unique_ptr<CurveEquations>> mEquations;
+};
+
+}  // namespace
+
+std::unique_ptr<CurveReader> VolumeScene::reader() const {
+    return std::make_unique<VolumeSceneReader>(mVolumes, mPatches, mLight);
+}
+
+}  // namespace bandvox
