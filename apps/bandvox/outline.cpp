@@ -18,9 +18,13 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -29,6 +33,8 @@ namespace {
 
 const std::vector<std::string> kOutlineKinds{"contour", "boundary", "crease", "intersection",
                                              "isophote"};
+
+const std::vector<std::string> kFillKinds{"none", "flat", "toon"};
 
 std::vector<std::string> outlineEndings() {
     std::vector<std::string> endings = vdbAndMeshEndings();
@@ -82,9 +88,24 @@ const CommandTable& outlineTable() {
                  lines,
                  {.words = kOutlineKinds, .isList = true}},
                 {"isophotes", 0, "C,...", "none",
-                 "Of volumes: also lines where the cosine of the angle between normal and light is "
-                 "C, as in 0.3,0.7.",
+                 "Also lines where the cosine of the angle between normal and light is C, as in "
+                 "0.3,0.7.",
                  lines},
+                {"fill",
+                 0,
+                 "KIND",
+                 "none",
+                 "What is between visible lines: none; flat, a colour for each object; toon, "
+                 "tones of it by the angle between surface and light.",
+                 lines,
+                 {.words = kFillKinds}},
+                {"tones", 0, "C,...", "0.25,0.7",
+                 "Cosines of that angle at which the tones of a toon fill change, ascending.",
+                 lines},
+                {"fill-colors", 0, "COLOR,...", joined(stroke.fillColors, ","),
+                 "Colours of the objects, one after the other, #rgb or #rrggbb.", lines},
+                {"shade", 0, "X", formatNumber(stroke.shade),
+                 "The darkest tone, as a part of the colour.", lines},
                 {"light", 0, "X,Y,Z", "-0.4,0.7,0.8",
                  "Direction to that light, along the camera's right, up and back.", lines},
                 {"no-hidden", 0, "", "", "Leave hidden lines away.", lines},
@@ -167,12 +188,47 @@ std::string readStyle(const CommandLine& line, const std::string& option, std::s
     return *text;
 }
 
-std::vector<double> readIsophotes(const CommandLine& line) {
+std::vector<double> readCosines(const CommandLine& line, const std::string& option,
+                                const std::vector<double>& fallback) {
     constexpr std::size_t kMost = 64;
     return line
-        .numbers("isophotes", 1, kMost, "cosines between -1 and 1, as in 0.3,0.7",
+        .numbers(option, 1, kMost, "cosines between -1 and 1, as in 0.3,0.7",
                  {.low = -1, .high = 1, .lowOpen = true, .highOpen = true})
-        .value_or(std::vector<double>());
+        .value_or(fallback);
+}
+
+bool isHexColor(std::string_view color) {
+    return (color.size() == 4 || color.size() == 7) && color[0] == '#' &&
+           std::all_of(color.begin() + 1, color.end(),
+                       [](unsigned char c) { return std::isxdigit(c) != 0; });
+}
+
+void readFill(const CommandLine& line, OutlineRequest& request) {
+    OutlineOptions& options = request.options;
+    options.fill = static_cast<OutlineFillKind>(line.choice("fill", 0));
+    const auto needsFill = [&](const char* option, bool isFilled, const char* fill) {
+        if (!line.has(option) || isFilled) return;
+        throw Error(ErrorKind::Usage,
+                    std::string("--") + option + " is for --fill " + fill + "; expected that, too");
+    };
+    const bool isToon = options.fill == OutlineFillKind::Toon;
+    needsFill("tones", isToon, "toon");
+    needsFill("shade", isToon, "toon");
+    needsFill("fill-colors", options.fill != OutlineFillKind::None, "flat or toon");
+    options.tones = readCosines(line, "tones", options.tones);
+    if (!std::is_sorted(options.tones.begin(), options.tones.end(), std::less_equal<>())) {
+        line.fail("tones", "ascending cosines between -1 and 1, as in 0.25,0.7");
+    }
+    request.stroke.shade = line.number("shade", {.low = 0, .high = 1}, request.stroke.shade);
+    if (const auto colors = line.text("fill-colors")) {
+        request.stroke.fillColors.clear();
+        for (const std::string_view color : split(*colors, ',')) {
+            if (!isHexColor(color)) {
+                line.fail("fill-colors", "colours as #rgb or #rrggbb, with commas between");
+            }
+            request.stroke.fillColors.emplace_back(color);
+        }
+    }
 }
 
 OutlineRequest parseOutline(const CommandLine& line) {
@@ -189,7 +245,8 @@ OutlineRequest parseOutline(const CommandLine& line) {
     options.creaseAngle = line.number("crease-angle", {.low = 0, .high = 180}, options.creaseAngle);
     options.camera = readCamera(
         line, (options.height - 2 * options.margin) / (options.width - 2 * options.margin));
-    options.isophotes = readIsophotes(line);
+    options.isophotes = readCosines(line, "isophotes", {});
+    readFill(line, request);
     options.light = line.vector("light", kAnyPlace).value_or(options.light);
     request.kinds = line.choices("kinds", kOutlineKinds);
     options.hidden = !line.has("no-hidden");
@@ -215,6 +272,11 @@ void sayOutline(CommandRun& run, const Outline& outline) {
             formatCount(anchors, "anchor", "anchors") + ", " +
             formatCount(visible, "path", "paths") + " with " +
             formatCount(visibleAnchors, "anchor", "anchors") + " of them seen");
+    if (!outline.fills.empty()) {
+        const auto regions = static_cast<std::int64_t>(outline.fills.size());
+        run.say("filled   " + formatCount(regions, "region", "regions"));
+        run.count("regions", regions);
+    }
     run.count("paths", paths);
     run.count("anchors", anchors);
     run.count("visible_paths", visible);
@@ -239,7 +301,7 @@ void runOutline(const CommandLine& line) {
     std::erase_if(outline.paths, [&](const OutlinePath& path) {
         return !request.kinds[static_cast<std::size_t>(path.kind)];
     });
-    if (outline.paths.empty()) {
+    if (outline.paths.empty() && outline.fills.empty()) {
         throw Error(ErrorKind::Result,
                     "the drawing is empty: it has no lines of these --kinds; expected some");
     }

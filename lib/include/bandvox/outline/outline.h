@@ -28,11 +28,22 @@ struct OutlinePath {
     std::size_t anchors() const { return points.size() / 3 + (closed ? 0 : 1); }
 };
 
-/// A drawing of lines.
+/// A region of a drawing in which one object is seen, in one tone.
+struct OutlineFill {
+    int object = 0;  ///< of the model's objects
+    int tone = 0;    ///< 0: the darkest; as many as OutlineOptions::tones is the lightest
+    /// Its borders, as closed paths' points: what an odd number of them surrounds is inside.
+    /// Neighbours have the same curves where they meet.
+    std::vector<std::vector<std::array<double, 2>>> loops;
+};
+
+/// A drawing of lines, and of regions under them.
 struct Outline {
     double width = 0, height = 0;  ///< of the page
     std::vector<std::string> objects;
     std::vector<OutlinePath> paths;
+    std::vector<OutlineFill> fills;  ///< they do not overlap
+    int tones = 1;                   ///< that fills may have
     std::vector<std::string> warnings;
 };
 

@@ -6,6 +6,13 @@
 
 namespace bandvox {
 
+/// What is between lines.
+enum class OutlineFillKind {
+    None,  ///< nothing
+    Flat,  ///< one tone for each object
+    Toon   ///< tones by the angle between surface and light
+};
+
 /// How surfaces are drawn as lines.
 struct OutlineOptions {
     CameraOptions camera;
@@ -15,9 +22,12 @@ struct OutlineOptions {
     double creaseAngle = 5;     ///< least angle between normals of a crease, degrees, 0 to 180
     bool intersections = true;  ///< draw where surfaces pass through each other
     bool hidden = true;         ///< keep lines that are behind something
-    /// Of volumes: lines where the cosine of the angle between the normal and the direction to the
-    /// light is one of these, between -1 and 1.
+    /// Lines where the cosine of the angle between the normal and the direction to the light is one
+    /// of these, between -1 and 1.
     std::vector<double> isophotes;
+    OutlineFillKind fill = OutlineFillKind::None;
+    /// Of a toon fill: cosines of that angle at which tones change, ascending, between -1 and 1.
+    std::vector<double> tones{0.25, 0.7};
     /// Direction to the light, along the camera's right, up and back, of any length but 0.
     openvdb::Vec3d light{-0.4, 0.7, 0.8};
 };

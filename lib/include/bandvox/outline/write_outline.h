@@ -4,16 +4,21 @@
 #include <bandvox/outline/outline.h>
 
 #include <string>
+#include <vector>
 
 namespace bandvox {
 
-/// How lines look in a file.
+/// How lines and fills look in a file.
 struct StrokeOptions {
     double width = 0.35;            ///< of visible lines, page units; > 0
     double hiddenWidth = 0.18;      ///< of hidden ones
     std::string color = "#000000";  ///< as CSS has it
     std::string hiddenColor = "#808080";
     std::string dash = "1.2 0.8";  ///< of hidden lines, lengths of line and gap, page units
+    /// Of fills in their lightest tone, "#rgb" or "#rrggbb", at least one: the first object has the
+    /// first colour, and so on, and over again.
+    std::vector<std::string> fillColors{"#f2d399", "#a8c8dc", "#c9dba4", "#e3b1a6", "#cdbfe0"};
+    double shade = 0.45;  ///< of the darkest tone, a part of that colour, 0 to 1
 };
 
 /// Writes a drawing as SVG: width and height in millimetres, with a matching viewBox. Each object

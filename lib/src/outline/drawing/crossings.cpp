@@ -1,16 +1,13 @@
 #include "outline/drawing/crossings.h"
 
+#include "outline/drawing/segment_grid.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <unordered_map>
 
 namespace bandvox {
 namespace {
-
-struct Segment {
-    std::uint32_t curve, index;
-};
 
 bool occludes(const Curve& curve) {
     return curve.kind == OutlineKind::Contour || curve.kind == OutlineKind::Boundary;
@@ -20,43 +17,6 @@ bool occludes(const Curve& curve) {
 bool liesOnSurface(const Curve& curve) {
     return curve.kind == OutlineKind::Intersection || curve.kind == OutlineKind::Isophote;
 }
-
-/// Segments of all curves by the squares of the page that they touch.
-class SegmentGrid {
-  public:
-    SegmentGrid(std::span<const Curve> curves, double cell) : mCurves(curves), mCell(cell) {
-        for (std::uint32_t c = 0; c < curves.size(); ++c) {
-            for (std::uint32_t i = 0; i + 1 < curves[c].points.size(); ++i) add({c, i});
-        }
-    }
-
-    const CurvePoint& start(const Segment& s) const { return mCurves[s.curve].points[s.index]; }
-    const CurvePoint& end(const Segment& s) const { return mCurves[s.curve].points[s.index + 1]; }
-    const std::unordered_map<std::uint64_t, std::vector<Segment>>& cells() const { return mCells; }
-
-    std::int64_t indexOf(double x) const {
-        return static_cast<std::int64_t>(std::floor(x / mCell));
-    }
-    static std::uint64_t key(std::int64_t i, std::int64_t j) {
-        return static_cast<std::uint64_t>(i) << 32U ^ (static_cast<std::uint64_t>(j) & 0xFFFFFFFFU);
-    }
-
-  private:
-    void add(const Segment& s) {
-        const CurvePoint& a = start(s);
-        const CurvePoint& b = end(s);
-        const std::int64_t i1 = indexOf(std::max(a.x, b.x)), j1 = indexOf(std::max(a.y, b.y));
-        for (std::int64_t i = indexOf(std::min(a.x, b.x)); i <= i1; ++i) {
-            for (std::int64_t j = indexOf(std::min(a.y, b.y)); j <= j1; ++j) {
-                mCells[key(i, j)].push_back(s);
-            }
-        }
-    }
-
-    std::span<const Curve> mCurves;
-    double mCell;
-    std::unordered_map<std::uint64_t, std::vector<Segment>> mCells;
-};
 
 class CrossingSearch {
   public:
@@ -91,14 +51,14 @@ class CrossingSearch {
     }
 
   private:
-    bool areNeighbours(const Segment& a, const Segment& b) const {
+    bool areNeighbours(const CurveSegment& a, const CurveSegment& b) const {
         if (a.curve != b.curve) return false;
         const std::uint32_t apart = a.index > b.index ? a.index - b.index : b.index - a.index;
         const auto last = static_cast<std::uint32_t>(mCurves[a.curve].points.size()) - 2;
         return apart <= 1 || (mCurves[a.curve].closed && apart >= last);
     }
 
-    void cross(const Segment& a, const Segment& b) {
+    void cross(const CurveSegment& a, const CurveSegment& b) {
         const Curve& first = mCurves[a.curve];
         const Curve& second = mCurves[b.curve];
         if ((!occludes(first) && !occludes(second)) || areNeighbours(a, b)) return;
@@ -188,25 +148,19 @@ class CrossingSearch {
     // Curves that pass through the end of another one, in space.
     void touch(std::size_t curve, const CurvePoint& p) {
         const double reach = 2 * mFlatness;
-        const std::int64_t i = mGrid.indexOf(p.x), j = mGrid.indexOf(p.y);
-        for (int near = 0; near < 9; ++near) {
-            const auto found =
-                mGrid.cells().find(SegmentGrid::key(i + near % 3 - 1, j + near / 3 - 1));
-            if (found == mGrid.cells().end()) continue;
-            for (const Segment& segment : found->second) {
-                if (segment.curve == curve) continue;
-                const CurvePoint &a = mGrid.start(segment), &b = mGrid.end(segment);
-                const double dx = b.x - a.x, dy = b.y - a.y;
-                const double square = dx * dx + dy * dy;
-                if (!(square > 0)) continue;
-                const double share =
-                    std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / square, 0.0, 1.0);
-                const double away = std::hypot(a.x + share * dx - p.x, a.y + share * dy - p.y);
-                const double below = a.z + share * (b.z - a.z) - p.z;
-                if (away > reach || std::abs(below) > 0.02 * mSize) continue;
-                mPlaces[segment.curve].push_back(segment.index + shareNear({&a, &b}, p, share));
-            }
-        }
+        mGrid.visitNear(p.x, p.y, [&](const CurveSegment& segment) {
+            if (segment.curve == curve) return;
+            const CurvePoint &a = mGrid.start(segment), &b = mGrid.end(segment);
+            const double dx = b.x - a.x, dy = b.y - a.y;
+            const double square = dx * dx + dy * dy;
+            if (!(square > 0)) return;
+            const double share =
+                std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / square, 0.0, 1.0);
+            const double away = std::hypot(a.x + share * dx - p.x, a.y + share * dy - p.y);
+            const double below = a.z + share * (b.z - a.z) - p.z;
+            if (away > reach || std::abs(below) > 0.02 * mSize) return;
+            mPlaces[segment.curve].push_back(segment.index + shareNear({&a, &b}, p, share));
+        });
     }
 
     std::span<const Curve> mCurves;

@@ -14,6 +14,7 @@ enum class CurveRule {
     Fold,            ///< F = 0 on the patch
     Border,          ///< a straight line of the patch's parameters
     Meeting,         ///< in two patches
+    Isophote,        ///< of one angle to the light on a patch
     VolumeFold,      ///< ∇f~·v = 0 on a volume's surface
     VolumeMeeting,   ///< in the surfaces of two volumes
     VolumeIsophote,  ///< of one angle to the light on a volume's surface
@@ -26,7 +27,7 @@ inline bool isOfVolume(CurveRule rule) {
 
 /// A point of a curve on patches, where the view sees it. Of a curve on a volume's surface `patch`
 /// is the number of that volume, `other` that of the other one of an intersection, (u, v, s) the
-/// place in index coordinates, and t the cosine that makes an isophote.
+/// place in index coordinates. Of an isophote t is the cosine that makes it.
 struct CurvePoint {
     double x = 0, y = 0, z = 0;  ///< on the page, and depth
     double tx = 1, ty = 0;       ///< direction of the curve on the page, length 1, without a sign
@@ -44,6 +45,7 @@ struct Curve {
     OutlineKind kind = OutlineKind::Contour;
     bool closed = false;  ///< the last point is the first one again
     int object = 0;
+    bool isDrawn = true;  ///< false: it only tells regions apart
     std::vector<CurvePoint> points;
 };
 

@@ -6,6 +6,13 @@
 
 namespace bandvox {
 
+/// What a line of sight meets first.
+struct SeenSurface {
+    int object = -1;    ///< none: it meets nothing
+    double z = 0;       ///< depth
+    double cosine = 0;  ///< of the angle between the normal, towards the eye, and the light
+};
+
 /// Asks a scene about its curves, for one thread at a time.
 class CurveReader {
   public:
@@ -21,6 +28,13 @@ class CurveReader {
     /// A function whose sign tells on which side of a surface's fold a point of that surface lies.
     /// A curve that is no fold lies on one surface, or on a second one, too, if it `isOther`.
     virtual double foldAt(const CurvePoint& point, bool isOther) = 0;
+
+    /// What is seen at a place of the page.
+    virtual SeenSurface seenAt(double x, double y) = 0;
+
+    /// The cosine of the angle between the light and the normal, towards the eye, of the surface
+    /// that a curve's point lies on.
+    virtual double cosineAt(const CurvePoint& point) = 0;
 };
 
 /// The surfaces that curves lie on and that hide them. Many threads may ask for readers at once,

@@ -8,6 +8,7 @@
 #include <bandvox/source/bezier_patch.h>
 
 #include <span>
+#include <vector>
 
 namespace bandvox {
 
@@ -20,7 +21,11 @@ void requireFinite(const PatchModel& model);
 /// How densely curves have to be known for a drawing.
 CurveSampling samplingFor(const OutlineOptions& options);
 
-/// Finds out what is hidden of curves, and fits cubics to them. Objects are left to be named.
+/// Cosines of all curves that an isophote is to be found for, drawn or to tell tones apart.
+std::vector<double> allIsophotes(const OutlineOptions& options);
+
+/// Finds out what is hidden of curves, fits cubics to them, and fills what is between. Objects are
+/// left to be named.
 /// Throws Error(ErrorKind::Result) if nothing is left to draw.
 Outline drawCurves(std::span<const Curve> curves, const CurveScene& scene,
                    const OutlineOptions& options, Progress& progress);

@@ -91,6 +91,15 @@ Camera pageCamera(const PageContent& content, const OutlineOptions& options) {
             static_cast<int>(std::ceil(pixels * high)), content.framed};
 }
 
+std::array<double, 3> lightDirection(const PageContent& content, const OutlineOptions& options) {
+    const Camera camera = pageCamera(content, options);
+    const auto& light = options.light;
+    const openvdb::Vec3d direction =
+        (light[0] * camera.right() + light[1] * camera.upward() - light[2] * camera.forward())
+            .unit();
+    return {direction[0], direction[1], direction[2]};
+}
+
 ViewMatrix pageView(const PageContent& content, const OutlineOptions& options, double turn) {
     ViewMatrix view = viewOf(pageCamera(content, options), options);
     settle(view, content, std::max(options.width, options.height), turn);

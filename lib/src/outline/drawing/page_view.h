@@ -24,6 +24,9 @@ PageContent contentOf(const std::vector<BezierPatch>& patches);
 /// The camera that sees a content.
 Camera pageCamera(const PageContent& content, const OutlineOptions& options);
 
+/// The direction to the light of `options`, world, length 1.
+std::array<double, 3> lightDirection(const PageContent& content, const OutlineOptions& options);
+
 /// The view of a content on a page, whose depths span as much as its longer side, turned by `turn`
 /// radians, so that nothing is seen exactly edge-on or from its axis. Throws
 /// Error(ErrorKind::Usage) if some of it reaches behind the eye.

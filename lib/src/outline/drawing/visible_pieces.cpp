@@ -192,7 +192,7 @@ class CurveSight {
     }
 
     Curve part(const Run& run) const {
-        Curve part{.kind = mCurve.kind, .object = mCurve.object};
+        Curve part{.kind = mCurve.kind, .object = mCurve.object, .isDrawn = mCurve.isDrawn};
         const auto begin = mRuler.parts(mRuler.placeAt(run.from)).first + 1;
         const auto end = mRuler.parts(mRuler.placeAt(run.to)).first;
         part.points.push_back(endAt(run.from));

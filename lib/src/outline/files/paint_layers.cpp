@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <fstream>
 #include <map>
+#include <string_view>
+#include <utility>
 
 namespace bandvox {
 
@@ -16,7 +18,7 @@ std::string PaintLayer::kindName() const {
     return kNames[static_cast<std::size_t>(kind)];
 }
 
-std::string PaintLayer::objectName(const Outline& outline) const {
+std::string objectName(const Outline& outline, int object) {
     const auto index = static_cast<std::size_t>(object);
     if (index < outline.objects.size()) return outline.objects[index];
     return "object " + std::to_string(object + 1);
@@ -35,6 +37,46 @@ std::vector<PaintLayer> paintLayers(const Outline& outline) {
         layers.push_back({key[0], key[1] == 1, static_cast<OutlineKind>(key[2]), std::move(paths)});
     }
     return layers;
+}
+
+std::vector<FillLayer> fillLayers(const Outline& outline, const StrokeOptions& options) {
+    if (!(options.shade >= 0 && options.shade <= 1)) {
+        throw Error(ErrorKind::Usage, "the shade of the darkest tone is " +
+                                          std::to_string(options.shade) + "; expected 0 to 1");
+    }
+    if (options.fillColors.empty()) {
+        throw Error(ErrorKind::Usage, "there are no colours to fill with; expected one at least");
+    }
+    std::map<int, FillLayer> sorted;
+    for (const OutlineFill& fill : outline.fills) {
+        FillLayer& layer = sorted[fill.object];
+        layer.object = fill.object;
+        layer.fills.push_back(&fill);
+    }
+    std::vector<FillLayer> layers;
+    layers.reserve(sorted.size());
+    for (auto& [object, layer] : sorted) {
+        const auto index = static_cast<std::size_t>(object) % options.fillColors.size();
+        const auto color = parsedColor(options.fillColors[index]);
+        for (int tone = 0; tone < outline.tones; ++tone) {
+            const double step = outline.tones > 1 ? double(tone) / (outline.tones - 1) : 1;
+            const double light = options.shade + (1 - options.shade) * step;
+            layer.colors.push_back({light * color[0], light * color[1], light * color[2]});
+        }
+        layers.push_back(std::move(layer));
+    }
+    return layers;
+}
+
+std::string hexColor(const std::array<double, 3>& color) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string text = "#";
+    for (const double c : color) {
+        const auto value = static_cast<std::size_t>(std::lround(255 * std::clamp(c, 0.0, 1.0)));
+        text += kDigits[value / 16];
+        text += kDigits[value % 16];
+    }
+    return text;
 }
 
 std::string plainNumber(double value) {

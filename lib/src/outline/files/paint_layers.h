@@ -18,12 +18,32 @@ struct PaintLayer {
 
     std::string sightName() const { return visible ? "visible" : "hidden"; }
     std::string kindName() const;
-    std::string objectName(const Outline& outline) const;
 };
 
 /// The layers of a drawing, object by object, hidden lines first, so that visible ones lie above
 /// them. They refer to the drawing.
 std::vector<PaintLayer> paintLayers(const Outline& outline);
+
+/// The regions of one object, with a colour for each tone.
+struct FillLayer {
+    int object = 0;
+    std::vector<const OutlineFill*> fills;
+    std::vector<std::array<double, 3>> colors;  ///< by tone; red, green and blue, 0 to 1
+};
+
+/// The fills of a drawing, object by object. They refer to the drawing. Throws
+/// Error(ErrorKind::Usage) for a colour or a shade that is none.
+std::vector<FillLayer> fillLayers(const Outline& outline, const StrokeOptions& options);
+
+/// The width of a fill's own line, page units: neighbours that only touch would let the paper
+/// shine through between them.
+constexpr double kFillSeam = 0.06;
+
+/// The name of one of the outline's objects.
+std::string objectName(const Outline& outline, int object);
+
+/// "#rrggbb".
+std::string hexColor(const std::array<double, 3>& color);
 
 /// A coordinate to a tenth of a micrometre, without needless zeros.
 std::string plainNumber(double value);

@@ -14,16 +14,58 @@ constexpr double kPointsPerUnit = 72 / 25.4;  // a page unit is a millimetre
 // The words for the operators that both languages have.
 struct Operators {
     const char *move, *curve, *close, *stroke, *color, *width, *dash;
+    const char *fillColor, *fill;  // fill, by the rule of odd and even, and stroke
 };
-constexpr Operators kPdf{"m", "c", "h", "S", "RG", "w", "d"};
-constexpr Operators kPostScript{"moveto",      "curveto",      "closepath", "stroke",
-                                "setrgbcolor", "setlinewidth", "setdash"};
+constexpr Operators kPdf{"m", "c", "h", "S", "RG", "w", "d", "rg", "B*"};
+constexpr Operators kPostScript{"moveto",  "curveto",     "closepath",
+                                "stroke",  "setrgbcolor", "setlinewidth",
+                                "setdash", "setrgbcolor", "gsave eofill grestore stroke"};
 
 void appendNumbers(std::string& text, const std::array<double, 2>& numbers) {
     for (const double number : numbers) text += plainNumber(number) + " ";
 }
 
-// Lines of a layer. The page's y goes up, and the drawing's down.
+// Curves of a path. The page's y goes up, and the drawing's down.
+void appendCurves(std::string& text, const std::vector<std::array<double, 2>>& points,
+                  double height, const Operators& words) {
+    const auto put = [&](const std::array<double, 2>& p) {
+        appendNumbers(text, {p[0], height - p[1]});
+    };
+    put(points[0]);
+    text += words.move;
+    text += '\n';
+    for (std::size_t i = 1; i + 2 < points.size(); i += 3) {
+        for (std::size_t k = 0; k < 3; ++k) put(points[i + k]);
+        text += words.curve;
+        text += '\n';
+    }
+}
+
+void appendFills(std::string& text, const FillLayer& layer, double height, const Operators& words) {
+    text += plainNumber(kFillSeam) + " ";
+    text += words.width;
+    text += " [] 0 ";
+    text += words.dash;
+    text += '\n';
+    for (const OutlineFill* fill : layer.fills) {
+        for (const char* word : {words.fillColor, words.color}) {
+            for (const double c : layer.colors[static_cast<std::size_t>(fill->tone)]) {
+                text += plainNumber(c) + " ";
+            }
+            text += word;
+            text += '\n';
+        }
+        for (const auto& loop : fill->loops) {
+            appendCurves(text, loop, height, words);
+            text += words.close;
+            text += '\n';
+        }
+        text += words.fill;
+        text += '\n';
+    }
+}
+
+// Lines of a layer.
 void appendLines(std::string& text, const PaintLayer& layer, double height,
                  const StrokeOptions& options, const Operators& words) {
     const auto [r, g, b] = parsedColor(layer.visible ? options.color : options.hiddenColor);
@@ -40,17 +82,7 @@ void appendLines(std::string& text, const PaintLayer& layer, double height,
     text += words.dash;
     text += '\n';
     for (const OutlinePath* path : layer.paths) {
-        const auto put = [&](const std::array<double, 2>& p) {
-            appendNumbers(text, {p[0], height - p[1]});
-        };
-        put(path->points[0]);
-        text += words.move;
-        text += '\n';
-        for (std::size_t i = 1; i + 2 < path->points.size(); i += 3) {
-            for (std::size_t k = 0; k < 3; ++k) put(path->points[i + k]);
-            text += words.curve;
-            text += '\n';
-        }
+        appendCurves(text, path->points, height, words);
         if (path->closed) {
             text += words.close;
             text += ' ';
@@ -117,10 +149,7 @@ void writePdf(AtomicFile& file, const Outline& outline, const StrokeOptions& opt
     content += " 0 0 " + scale;
     content += " 0 0 cm\n";
     std::string properties, order;
-    for (const PaintLayer& layer : paintLayers(outline)) {
-        std::string name = layer.objectName(outline);
-        name += ": " + layer.sightName();
-        name += " " + layer.kindName();
+    const auto beginLayer = [&](const std::string& name) {
         const std::size_t group = objects.add("<< /Type /OCG /Name " + pdfText(name) + " >>");
         const std::string label = "/L" + std::to_string(group);
         properties += label + " ";
@@ -128,6 +157,17 @@ void writePdf(AtomicFile& file, const Outline& outline, const StrokeOptions& opt
         order += reference(group) + " ";
         content += "/OC " + label;
         content += " BDC\n";
+    };
+    for (const FillLayer& layer : fillLayers(outline, options)) {
+        beginLayer(objectName(outline, layer.object) + ": fill");
+        appendFills(content, layer, outline.height, kPdf);
+        content += "EMC\n";
+    }
+    for (const PaintLayer& layer : paintLayers(outline)) {
+        std::string name = objectName(outline, layer.object);
+        name += ": " + layer.sightName();
+        name += " " + layer.kindName();
+        beginLayer(name);
         appendLines(content, layer, outline.height, options, kPdf);
         content += "EMC\n";
     }
@@ -164,6 +204,10 @@ void writeEps(AtomicFile& file, const Outline& outline, const StrokeOptions& opt
     const std::string scale = plainNumber(kPointsPerUnit);
     text += scale + " ";
     text += scale + " scale 1 setlinecap 1 setlinejoin\n";
+    for (const FillLayer& layer : fillLayers(outline, options)) {
+        text += "% fill\n";
+        appendFills(text, layer, outline.height, kPostScript);
+    }
     for (const PaintLayer& layer : paintLayers(outline)) {
         text += "% " + layer.sightName();
         text += " " + layer.kindName();

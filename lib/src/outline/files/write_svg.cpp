@@ -22,22 +22,26 @@ std::string escaped(const std::string& text) {
     return result;
 }
 
-void appendSvgPath(std::string& text, const OutlinePath& path, const std::string& id) {
-    text += "      <path id=\"" + id;
-    text += "\" d=\"";
+void appendPathData(std::string& text, const std::vector<std::array<double, 2>>& points) {
     const auto put = [&](const std::array<double, 2>& p) {
         text += plainNumber(p[0]) + ",";
         text += plainNumber(p[1]);
     };
     text += 'M';
-    put(path.points[0]);
-    for (std::size_t i = 1; i + 2 < path.points.size(); i += 3) {
+    put(points[0]);
+    for (std::size_t i = 1; i + 2 < points.size(); i += 3) {
         text += " C";
         for (std::size_t k = 0; k < 3; ++k) {
             if (k > 0) text += ' ';
-            put(path.points[i + k]);
+            put(points[i + k]);
         }
     }
+}
+
+void appendSvgPath(std::string& text, const OutlinePath& path, const std::string& id) {
+    text += "      <path id=\"" + id;
+    text += "\" d=\"";
+    appendPathData(text, path.points);
     text += path.closed ? " Z\"/>\n" : "\"/>\n";
 }
 
@@ -50,7 +54,12 @@ std::string svgHeader(const Outline& outline, const StrokeOptions& options) {
     text += "mm\" viewBox=\"0 0 " + width;
     text += " " + height;
     text += "\">\n  <style>\n";
-    text += "    path { fill: none; stroke-linecap: round; stroke-linejoin: round; }\n";
+    text += "    path { stroke-linecap: round; stroke-linejoin: round; }\n";
+    text += "    .visible path, .hidden path { fill: none; }\n";
+    if (!outline.fills.empty()) {
+        text += "    .fill path { fill-rule: evenodd; stroke-width: " + plainNumber(kFillSeam);
+        text += "; }\n";
+    }
     text += "    .visible path { stroke: " + escaped(options.color);
     text += "; stroke-width: " + plainNumber(options.width);
     text += "; }\n    .hidden path { stroke: " + escaped(options.hiddenColor);
@@ -58,6 +67,40 @@ std::string svgHeader(const Outline& outline, const StrokeOptions& options) {
     text += "; stroke-dasharray: " + escaped(options.dash);
     text += "; }\n  </style>\n";
     return text;
+}
+
+// All fills lie under all lines.
+void appendSvgFills(std::string& text, const Outline& outline, const StrokeOptions& options) {
+    const std::vector<FillLayer> layers = fillLayers(outline, options);
+    if (layers.empty()) return;
+    text += "  <g id=\"fills\" inkscape:groupmode=\"layer\" inkscape:label=\"fills\">\n";
+    for (const FillLayer& layer : layers) {
+        std::string id = "fill-";
+        id += std::to_string(layer.object + 1);
+        text += "    <g id=\"" + id;
+        text += "\" class=\"fill\" inkscape:groupmode=\"layer\" inkscape:label=\"";
+        text += escaped(objectName(outline, layer.object));
+        text += "\">\n";
+        for (std::size_t k = 0; k < layer.fills.size(); ++k) {
+            const OutlineFill& fill = *layer.fills[k];
+            const std::string color = hexColor(layer.colors[static_cast<std::size_t>(fill.tone)]);
+            text += "      <path id=\"" + id;
+            text += '-';
+            text += std::to_string(k + 1);
+            text += "\" class=\"tone-";
+            text += std::to_string(fill.tone);
+            text += "\" fill=\"" + color;
+            text += "\" stroke=\"" + color;
+            text += "\" d=\"";
+            for (const auto& loop : fill.loops) {
+                appendPathData(text, loop);
+                text += 'Z';
+            }
+            text += "\"/>\n";
+        }
+        text += "    </g>\n";
+    }
+    text += "  </g>\n";
 }
 
 void appendSvgLayer(std::string& text, const PaintLayer& layer) {
@@ -83,6 +126,7 @@ void appendSvgLayer(std::string& text, const PaintLayer& layer) {
 
 void writeSvg(AtomicFile& file, const Outline& outline, const StrokeOptions& options) {
     std::string text = svgHeader(outline, options);
+    appendSvgFills(text, outline, options);
     int object = -1;
     for (const PaintLayer& layer : paintLayers(outline)) {
         if (layer.object != object) {
@@ -90,7 +134,7 @@ void writeSvg(AtomicFile& file, const Outline& outline, const StrokeOptions& opt
             object = layer.object;
             text += "  <g id=\"object-" + std::to_string(object + 1);
             text += "\" inkscape:groupmode=\"layer\" inkscape:label=\"";
-            text += escaped(layer.objectName(outline));
+            text += escaped(objectName(outline, layer.object));
             text += "\">\n";
         }
         appendSvgLayer(text, layer);

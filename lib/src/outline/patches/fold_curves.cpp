@@ -19,9 +19,9 @@ struct LedPoint {
 /// Samples one stretch of a fold.
 class StretchSampler {
   public:
-    StretchSampler(const ViewPatch& patch, int index, const FoldStretch& stretch,
+    StretchSampler(const ViewPatch& patch, int index, const FoldStretch& stretch, CurveRule rule,
                    const CurveSampling& sampling)
-        : mPatch(patch), mIndex(index), mStretch(stretch), mSampling(sampling) {}
+        : mPatch(patch), mIndex(index), mStretch(stretch), mRule(rule), mSampling(sampling) {}
 
     std::vector<CurvePoint> sample() {
         const LedPoint first = at(mStretch.lead0, mStretch.start);
@@ -35,15 +35,23 @@ class StretchSampler {
         const auto [u, v] = mStretch.at(mPatch, lead, guess);
         const ViewPoint p = mPatch.at(u, v);
         const Gradient2 f = evaluate(mPatch.f, u, v);
-        const auto [tx, ty] = foldDirection(p);
-        double du = mStretch.leadIsU ? 1 : -f.dv / f.du;
-        double dv = mStretch.leadIsU ? -f.du / f.dv : 1;
-        const double speed = (p.xu * du + p.xv * dv) * tx + (p.yu * du + p.yv * dv) * ty;
-        return {
-            lead,
-            mStretch.leadIsU ? v : u,
-            speed,
-            {.x = p.x, .y = p.y, .z = p.z, .tx = tx, .ty = ty, .patch = mIndex, .u = u, .v = v}};
+        const double du = mStretch.leadIsU ? 1 : -f.dv / f.du;
+        const double dv = mStretch.leadIsU ? -f.du / f.dv : 1;
+        const double moveX = p.xu * du + p.xv * dv, moveY = p.yu * du + p.yv * dv;
+        auto [tx, ty] = foldDirection(p);
+        double speed = moveX * tx + moveY * ty;
+        if (mRule != CurveRule::Fold) {
+            speed = std::hypot(moveX, moveY);
+            if (speed > 0) {
+                tx = moveX / speed;
+                ty = moveY / speed;
+            }
+        }
+        CurvePoint point{.x = p.x, .y = p.y, .z = p.z, .tx = tx, .ty = ty, .patch = mIndex};
+        point.u = u;
+        point.v = v;
+        point.rule = mRule;
+        return {lead, mStretch.leadIsU ? v : u, speed, point};
     }
 
     LedPoint between(const LedPoint& a, const LedPoint& b, double share) const {
@@ -54,9 +62,9 @@ class StretchSampler {
         return a.point.tx * b.point.tx + a.point.ty * b.point.ty;
     }
 
-    // Turns the direction of b, which has no sign of its own, as that of a.
-    static void alignWith(const LedPoint& a, LedPoint& b) {
-        if (turn(a, b) >= 0) return;
+    // Turns the direction of b, if it has no sign of its own, as that of a.
+    void alignWith(const LedPoint& a, LedPoint& b) const {
+        if (mRule != CurveRule::Fold || turn(a, b) >= 0) return;
         b.point.tx = -b.point.tx;
         b.point.ty = -b.point.ty;
         b.speed = -b.speed;
@@ -129,6 +137,7 @@ class StretchSampler {
     const ViewPatch& mPatch;
     int mIndex;
     const FoldStretch& mStretch;
+    CurveRule mRule;
     const CurveSampling& mSampling;
     std::vector<CurvePoint> mPoints;
 };
@@ -201,11 +210,12 @@ class StretchJoiner {
 
 }  // namespace
 
-std::vector<Curve> foldCurves(const ViewPatch& patch, int index, const CurveSampling& sampling) {
+std::vector<Curve> zeroCurves(const ViewPatch& patch, int index, CurveRule rule,
+                              const CurveSampling& sampling) {
     const FoldCells cells = isolateFold(patch);
     std::vector<std::vector<CurvePoint>> stretches;
     for (const FoldStretch& stretch : cells.stretches) {
-        stretches.push_back(StretchSampler(patch, index, stretch, sampling).sample());
+        stretches.push_back(StretchSampler(patch, index, stretch, rule, sampling).sample());
     }
     StretchJoiner joiner(std::move(stretches));
     joiner.link(1e-9);
@@ -213,6 +223,10 @@ std::vector<Curve> foldCurves(const ViewPatch& patch, int index, const CurveSamp
     std::vector<Curve> curves = joiner.curves();
     for (Curve& curve : curves) curve.object = patch.object;
     return curves;
+}
+
+std::vector<Curve> foldCurves(const ViewPatch& patch, int index, const CurveSampling& sampling) {
+    return zeroCurves(patch, index, CurveRule::Fold, sampling);
 }
 
 }  // namespace bandvox

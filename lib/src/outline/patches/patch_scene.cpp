@@ -11,11 +11,15 @@ constexpr double kDepthMargin = 1e-7;
 
 class PatchReader final : public CurveReader {
   public:
-    PatchReader(std::span<const ViewPatch> patches, const Sheets& sheets, double size)
-        : mPatches(patches), mSheets(sheets), mSize(size) {}
+    PatchReader(const LitPatches& lit, const Sheets& sheets, double size)
+        : mLit(lit), mSheets(sheets), mSize(size) {}
 
     CurvePoint between(const CurvePoint& a, const CurvePoint& b, double share) override {
-        return pointBetween(mPatches, a, b, share);
+        const bool isIsophote = a.rule == CurveRule::Isophote && b.rule == CurveRule::Isophote;
+        if (isIsophote && a.patch == b.patch && a.t == b.t) {
+            return isophoteBetween(mLit, a, b, share);
+        }
+        return pointBetween(mLit.seen, a, b, share);
     }
 
     int countBefore(const CurvePoint& point) override {
@@ -23,24 +27,37 @@ class PatchReader final : public CurveReader {
     }
 
     double foldAt(const CurvePoint& point, bool isOther) override {
-        const auto index = static_cast<std::size_t>(isOther ? point.other : point.patch);
-        return evaluate(mPatches[index].f, isOther ? point.s : point.u, isOther ? point.t : point.v)
+        const bool isSecond = isOther && point.other >= 0;
+        const auto index = static_cast<std::size_t>(isSecond ? point.other : point.patch);
+        return evaluate(mLit.seen[index].f, isSecond ? point.s : point.u,
+                        isSecond ? point.t : point.v)
             .value;
     }
 
+    SeenSurface seenAt(double x, double y) override {
+        const auto place = mSheets.firstAt(x, y);
+        if (!place) return {};
+        return {mLit.seen[static_cast<std::size_t>(place->patch)].object, place->z,
+                lightCosine(mLit, place->patch, place->u, place->v)};
+    }
+
+    double cosineAt(const CurvePoint& point) override {
+        return lightCosine(mLit, point.patch, point.u, point.v);
+    }
+
   private:
-    std::span<const ViewPatch> mPatches;
+    const LitPatches& mLit;
     const Sheets& mSheets;
     double mSize;
 };
 
 }  // namespace
 
-PatchScene::PatchScene(std::span<const ViewPatch> patches, double size)
-    : mPatches(patches), mSheets(patches), mSize(size) {}
+PatchScene::PatchScene(const LitPatches& lit, double size)
+    : mLit(lit), mSheets(lit.seen), mSize(size) {}
 
 std::unique_ptr<CurveReader> PatchScene::reader() const {
-    return std::make_unique<PatchReader>(mPatches, mSheets, mSize);
+    return std::make_unique<PatchReader>(mLit, mSheets, mSize);
 }
 
 }  // namespace bandvox

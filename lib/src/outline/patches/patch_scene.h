@@ -1,9 +1,10 @@
 #pragma once
 
 #include "outline/drawing/curve_scene.h"
+#include "outline/patches/isophotes.h"
 #include "outline/patches/sheets.h"
 
-#include <span>
+#include <memory>
 
 namespace bandvox {
 
@@ -11,12 +12,12 @@ namespace bandvox {
 class PatchScene final : public CurveScene {
   public:
     /// `size`: of the page. The patches are kept by reference.
-    PatchScene(std::span<const ViewPatch> patches, double size);
+    PatchScene(const LitPatches& lit, double size);
 
     std::unique_ptr<CurveReader> reader() const override;
 
   private:
-    std::span<const ViewPatch> mPatches;
+    LitPatches mLit;
     Sheets mSheets;
     double mSize;
 };

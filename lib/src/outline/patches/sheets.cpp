@@ -120,9 +120,12 @@ void visitQuarters(const Part& part, const ViewPatch& patch, const IsWanted& isW
 
 }  // namespace
 
-/// A line of sight to a point.
+/// A line of sight, and what it has met.
 struct Sheets::Sight {
-    double x, y, z;  // before which patches are counted
+    double x, y, z;  // what is farther does not count
+    bool seeksFirst = false;
+    int count = 0;
+    Place last{};  // of those that are met: the first one, if that is sought
 
     bool mayMeet(const Part& p) const {
         return x >= p.x0 && x <= p.x1 && y >= p.y0 && y <= p.y1 && p.z0 < z;
@@ -195,25 +198,23 @@ std::size_t Sheets::row(double y) const {
         std::clamp(std::floor((y - mTop) / mCellHeight), 0.0, kCells - 1.0));
 }
 
-int Sheets::countCut(const Part& part, const Sight& sight) const {
-    if (part.size < kSmallest) return 0;
-    int count = 0;
+void Sheets::meetCut(const Part& part, Sight& sight) const {
+    if (part.size < kSmallest) return;
     visitQuarters(
         part, mPatches[static_cast<std::size_t>(part.patch)],
         [&](const Part& p) { return sight.mayMeet(p); },
-        [&](const Part& quarter) { count += countIn(quarter, sight); });
-    return count;
+        [&](const Part& quarter) { meet(quarter, sight); });
 }
 
-int Sheets::countIn(const Part& part, const Sight& sight) const {
-    if (!part.oneToOne) return countCut(part, sight);
+void Sheets::meet(const Part& part, Sight& sight) const {
+    if (!part.oneToOne) return meetCut(part, sight);
     // By the bound of derivatives a place is not farther from the one that the mean derivative
     // tells than `bend` of the way.
     const double half = 0.5 * part.size;
     const double gx = sight.x - part.middleX, gy = sight.y - part.middleY;
     const double du0 = gx * part.inverse[0] + gy * part.inverse[1];
     const double dv0 = gx * part.inverse[2] + gy * part.inverse[3];
-    if (std::max(std::abs(du0), std::abs(dv0)) > half * (1 + 2 * part.bend)) return 0;
+    if (std::max(std::abs(du0), std::abs(dv0)) > half * (1 + 2 * part.bend)) return;
     const ViewPatch& patch = mPatches[static_cast<std::size_t>(part.patch)];
     double u = part.u0 + half + du0, v = part.v0 + half + dv0;
     ViewPoint p;
@@ -232,22 +233,35 @@ int Sheets::countIn(const Part& part, const Sight& sight) const {
             break;
         }
     }
-    if (!isFound) return countCut(part, sight);
+    if (!isFound) return meetCut(part, sight);
     // Parts share their borders, and each has two of its own.
     const bool isInU =
         u >= part.u0 && (u < part.u0 + part.size || (u <= 1 && part.u0 + part.size == 1));
     const bool isInV =
         v >= part.v0 && (v < part.v0 + part.size || (v <= 1 && part.v0 + part.size == 1));
-    return isInU && isInV && p.z < sight.z ? 1 : 0;
+    if (!isInU || !isInV || !(p.z < sight.z)) return;
+    ++sight.count;
+    sight.last = {part.patch, std::clamp(u, 0.0, 1.0), std::clamp(v, 0.0, 1.0), p.z};
+    if (sight.seeksFirst) sight.z = p.z;
+}
+
+void Sheets::meetAll(Sight& sight) const {
+    for (const std::uint32_t k : mCells[row(sight.y) * kCells + column(sight.x)]) {
+        if (sight.mayMeet(mParts[k])) meet(mParts[k], sight);
+    }
 }
 
 int Sheets::countBefore(const CurvePoint& point, double margin) const {
-    const Sight sight{point.x, point.y, point.z - margin};
-    int count = 0;
-    for (const std::uint32_t k : mCells[row(point.y) * kCells + column(point.x)]) {
-        if (sight.mayMeet(mParts[k])) count += countIn(mParts[k], sight);
-    }
-    return count;
+    Sight sight{point.x, point.y, point.z - margin};
+    meetAll(sight);
+    return sight.count;
+}
+
+std::optional<Sheets::Place> Sheets::firstAt(double x, double y) const {
+    Sight sight{x, y, std::numeric_limits<double>::infinity(), true};
+    meetAll(sight);
+    if (sight.count == 0) return std::nullopt;
+    return sight.last;
 }
 
 }  // namespace bandvox

@@ -5,6 +5,7 @@
 #include "outline/patches/view_patch.h"
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,15 @@ class Sheets {
     /// How many times the line of sight to a point of a curve meets patches that are nearer than it
     /// by more than `margin`. Where a patch folds within 1/8192 of its parameters it is not met.
     int countBefore(const CurvePoint& point, double margin) const;
+
+    /// A place of a patch, and its depth.
+    struct Place {
+        int patch = -1;
+        double u = 0, v = 0, z = 0;
+    };
+
+    /// What the line of sight at a place of the page meets first.
+    std::optional<Place> firstAt(double x, double y) const;
 
     /// A part of a patch, as the page sees it.
     struct Part {
@@ -42,8 +52,9 @@ class Sheets {
   private:
     struct Sight;
     void cutPart(Part part, int depth, std::vector<Part>& parts) const;
-    int countIn(const Part& part, const Sight& sight) const;
-    int countCut(const Part& part, const Sight& sight) const;
+    void meet(const Part& part, Sight& sight) const;
+    void meetCut(const Part& part, Sight& sight) const;
+    void meetAll(Sight& sight) const;
     std::size_t column(double x) const;
     std::size_t row(double y) const;
 

@@ -1,5 +1,6 @@
 #include "outline/patches/surface_curves.h"
 
+#include "outline/drawing/draw_curves.h"
 #include "outline/drawing/join_curves.h"
 #include "outline/patches/border_curves.h"
 #include "outline/patches/fold_curves.h"
@@ -13,30 +14,89 @@
 #include <numbers>
 
 namespace bandvox {
+namespace {
 
-std::vector<Curve> surfaceCurves(std::span<const BezierPatch> patches,
-                                 std::span<const ViewPatch> seen, const OutlineOptions& options,
-                                 const CurveSampling& sampling, Progress& progress) {
-    std::vector<std::vector<Curve>> perPatch(seen.size());
-    parallelFor(static_cast<std::int64_t>(seen.size()), [&](std::int64_t i) {
-        progress.throwIfInterrupted();
-        const auto k = static_cast<std::size_t>(i);
-        perPatch[k] = foldCurves(seen[k], static_cast<int>(i), sampling);
-    });
-    std::vector<Curve> folds;
-    for (auto& some : perPatch) std::move(some.begin(), some.end(), std::back_inserter(folds));
-    const double crease = std::cos(options.creaseAngle * std::numbers::pi / 180);
-    const std::vector<SharedSide> sides = matchSides(patches, seen);
-    BorderCurves borders = borderCurves(patches, seen, sides, folds, crease, sampling);
-    std::move(borders.contours.begin(), borders.contours.end(), std::back_inserter(folds));
-    std::vector<Curve> meetings;
-    if (options.intersections) meetings = meetingCurves(seen, sides, sampling, progress);
-    std::vector<Curve> curves;
-    for (auto* kind : {&folds, &borders.boundaries, &borders.creases, &meetings}) {
-        std::vector<Curve> joined = joinCurves(std::move(*kind), sampling);
-        std::move(joined.begin(), joined.end(), std::back_inserter(curves));
+double cosineOf(double degrees) {
+    return std::cos(degrees * std::numbers::pi / 180);
+}
+
+/// Makes the curves of one drawing.
+class SurfaceCurves {
+  public:
+    SurfaceCurves(const LitPatches& lit, const OutlineOptions& options,
+                  const CurveSampling& sampling, Progress& progress)
+        : mLit(lit), mOptions(options), mSampling(sampling), mProgress(progress) {}
+
+    std::vector<Curve> make() {
+        std::vector<Curve> folds = ofEachPatch([&](int k) {
+            return foldCurves(mLit.seen[static_cast<std::size_t>(k)], k, mSampling);
+        });
+        const auto& [patches, seen, light] = mLit;
+        const std::vector<SharedSide> sides = matchSides(patches, seen);
+        BorderCurves borders =
+            borderCurves(patches, seen, sides, folds, cosineOf(mOptions.creaseAngle), mSampling);
+        std::vector<Curve> seams;
+        if (mOptions.fill == OutlineFillKind::Toon) seams = seamsOf(sides, folds);
+        append(folds, borders.contours);
+        std::vector<Curve> meetings;
+        if (mOptions.intersections || mOptions.fill != OutlineFillKind::None) {
+            meetings = meetingCurves(seen, sides, mSampling, mProgress);
+        }
+        for (auto* kind : {&folds, &borders.boundaries, &borders.creases, &meetings, &seams}) {
+            join(std::move(*kind));
+        }
+        for (const double cosine : allIsophotes(mOptions)) {
+            join(ofEachPatch([&](int k) { return isophoteCurves(mLit, k, cosine, mSampling); }));
+        }
+        return std::move(mCurves);
     }
-    return curves;
+
+  private:
+    // Tones jump where normals do, be it by little.
+    std::vector<Curve> seamsOf(const std::vector<SharedSide>& sides,
+                               const std::vector<Curve>& folds) const {
+        constexpr double kLeastDegrees = 0.01;
+        if (mOptions.creaseAngle <= kLeastDegrees) return {};
+        std::vector<Curve> seams =
+            borderCurves(mLit.patches, mLit.seen, sides, folds, cosineOf(kLeastDegrees), mSampling)
+                .creases;
+        for (Curve& curve : seams) curve.isDrawn = false;
+        return seams;
+    }
+
+    template <class CurvesOf>
+    std::vector<Curve> ofEachPatch(const CurvesOf& curvesOf) const {
+        std::vector<std::vector<Curve>> perPatch(mLit.seen.size());
+        parallelFor(static_cast<std::int64_t>(perPatch.size()), [&](std::int64_t i) {
+            mProgress.throwIfInterrupted();
+            perPatch[static_cast<std::size_t>(i)] = curvesOf(static_cast<int>(i));
+        });
+        std::vector<Curve> curves;
+        for (auto& some : perPatch) append(curves, some);
+        return curves;
+    }
+
+    static void append(std::vector<Curve>& curves, std::vector<Curve>& more) {
+        std::move(more.begin(), more.end(), std::back_inserter(curves));
+    }
+
+    void join(std::vector<Curve> curves) {
+        std::vector<Curve> joined = joinCurves(std::move(curves), mSampling);
+        append(mCurves, joined);
+    }
+
+    const LitPatches& mLit;
+    const OutlineOptions& mOptions;
+    const CurveSampling& mSampling;
+    Progress& mProgress;
+    std::vector<Curve> mCurves;
+};
+
+}  // namespace
+
+std::vector<Curve> surfaceCurves(const LitPatches& lit, const OutlineOptions& options,
+                                 const CurveSampling& sampling, Progress& progress) {
+    return SurfaceCurves(lit, options, sampling, progress).make();
 }
 
 }  // namespace bandvox

@@ -1,19 +1,18 @@
 #pragma once
 
 #include "outline/drawing/curve.h"
-#include "outline/patches/view_patch.h"
+#include "outline/patches/isophotes.h"
 
 #include <bandvox/core/progress.h>
-#include <bandvox/outline/patches_to_outline.h>
+#include <bandvox/outline/outline_options.h>
 
-#include <span>
 #include <vector>
 
 namespace bandvox {
 
-/// All curves that a drawing of patches may show, seen or hidden, joined across their sides.
-std::vector<Curve> surfaceCurves(std::span<const BezierPatch> patches,
-                                 std::span<const ViewPatch> seen, const OutlineOptions& options,
+/// All curves that a drawing of patches may show, seen or hidden, joined across their sides; with
+/// a fill also those that only tell regions apart.
+std::vector<Curve> surfaceCurves(const LitPatches& lit, const OutlineOptions& options,
                                  const CurveSampling& sampling, Progress& progress);
 
 }  // namespace bandvox

@@ -90,11 +90,12 @@ std::vector<Curve> curvesOn(const VolumeSurface& surface, const CurveRequest& re
             curves.push_back(std::move(curve));
         }
     };
-    for (const double cosine : request.options.isophotes) {
+    for (const double cosine : allIsophotes(request.options)) {
         add(OutlineKind::Isophote,
             [&] { return std::make_unique<IsophoteEquations>(surface, request.light, cosine); });
     }
-    if (!request.options.intersections) return curves;
+    const bool isFilled = request.options.fill != OutlineFillKind::None;
+    if (!request.options.intersections && !isFilled) return curves;
     for (const VolumeSurface& other : request.surfaces) {
         if (other.index <= surface.index) continue;
         add(OutlineKind::Intersection,
@@ -116,14 +117,12 @@ VolumeDrawing::VolumeDrawing(const std::vector<OutlineVolume>& volumes, const Pa
     const CurveSampling sampling = samplingFor(options);
     const ViewMatrix view = pageView(content, options, kTurnOfVolumes);
     mPatches = seenBy(view, patches.patches, sampling.size);
-    mCurves = surfaceCurves(patches.patches, mPatches, options, sampling, progress);
+    mLit = {patches.patches, mPatches, lightDirection(content, options)};
+    mCurves = surfaceCurves(mLit, options, sampling, progress);
     for (const auto& object : mObjects) {
         mSurfaces.push_back(surfaceOf(*object, view, static_cast<int>(mSurfaces.size())));
     }
-    const Camera camera = pageCamera(content, options);
-    const Vec3d light = (options.light[0] * camera.right() + options.light[1] * camera.upward() -
-                         options.light[2] * camera.forward())
-                            .unit();
+    const Vec3d light(mLit.light[0], mLit.light[1], mLit.light[2]);
     const auto firstObject = static_cast<int>(patches.objects.size());
     for (const VolumeSurface& surface : mSurfaces) {
         for (Curve& curve : curvesOn(surface, {options, light, sampling, mSurfaces}, progress)) {
@@ -131,8 +130,8 @@ VolumeDrawing::VolumeDrawing(const std::vector<OutlineVolume>& volumes, const Pa
             mCurves.push_back(std::move(curve));
         }
     }
-    if (!mPatches.empty()) mPatchScene = std::make_unique<PatchScene>(mPatches, sampling.size);
-    mScene = std::make_unique<VolumeScene>(mSurfaces, mPatchScene.get(), light);
+    if (!mPatches.empty()) mPatchScene = std::make_unique<PatchScene>(mLit, sampling.size);
+    mScene = std::make_unique<VolumeScene>(mSurfaces, mPatchScene.get(), light, firstObject);
 }
 
 }  // namespace bandvox

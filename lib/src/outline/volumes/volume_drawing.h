@@ -14,7 +14,7 @@ namespace bandvox {
 /// Volumes and patches on a page, and all curves of a drawing of them, seen or hidden.
 class VolumeDrawing {
   public:
-    /// Throws as volumesToOutline.
+    /// The patches are kept by reference. Throws as volumesToOutline.
     VolumeDrawing(const std::vector<OutlineVolume>& volumes, const PatchModel& patches,
                   const OutlineOptions& options, Progress& progress);
     VolumeDrawing(const VolumeDrawing&) = delete;
@@ -27,6 +27,7 @@ class VolumeDrawing {
   private:
     std::vector<std::unique_ptr<SurfaceObject>> mObjects;
     std::vector<ViewPatch> mPatches;
+    LitPatches mLit;
     std::vector<VolumeSurface> mSurfaces;
     std::vector<Curve> mCurves;
     std::unique_ptr<PatchScene> mPatchScene;  // null without patches

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -15,7 +16,17 @@ using openvdb::Vec3d;
 class VolumeReader {
   public:
     explicit VolumeReader(const VolumeSurface& surface)
-        : mSurface(surface), mProbe(surface.object->probe()), mContour(surface) {}
+        : mSurface(surface),
+          mProbe(surface.object->probe()),
+          mContour(surface),
+          mMiddleDepth(surface.view.place(surface.middle)[2]),
+          mToWorld(surface.object->grid()
+                       .transform()
+                       .baseMap()
+                       ->getAffineMap()
+                       ->getMat4()
+                       .getMat3()
+                       .inverse()) {}
 
     /// How often the surface is passed before a place of another one.
     int countBefore(const CurvePoint& point) { return countUpTo(placeSeen(point), 0); }
@@ -33,6 +44,30 @@ class VolumeReader {
     }
 
     double foldAt(const CurvePoint& point) { return mContour.side(placeSeen(point)); }
+
+    /// Where the line of sight at a place of the page enters the solid.
+    std::optional<Vec3d> firstAt(double x, double y) {
+        const Vec3d place = mSurface.view.placeOf({x, y, mMiddleDepth});
+        const double far = mSurface.size + (place - mSurface.middle).length();
+        const Vec3d start = mSurface.view.start(place, far);
+        const Vec3d direction = (place - start).unit();
+        const Ray ray{start, direction};
+        const auto hit = mSurface.object->march().firstHit(ray, *mProbe, 4 * far);
+        if (!hit) return std::nullopt;
+        return start + hit->t * direction;
+    }
+
+    Vec3d seen(const Vec3d& place) const { return mSurface.view.place(place); }
+
+    /// Of the angle between a light, world, and the normal out of the solid.
+    double cosineAt(const Vec3d& place, const Vec3d& light) {
+        const Vec3d normal = -(mToWorld * mProbe->evaluate(place).gradient);
+        const double length = normal.length();
+        return length > 0 ? normal.dot(light) / length : 0;
+    }
+    double cosineAt(const CurvePoint& point, const Vec3d& light) {
+        return cosineAt(placeSeen(point), light);
+    }
 
   private:
     // Places of the volume's own curves are known exactly.
@@ -64,13 +99,15 @@ class VolumeReader {
     const VolumeSurface& mSurface;
     std::unique_ptr<DensityProbe> mProbe;
     ContourEquations mContour;
+    double mMiddleDepth;
+    openvdb::Mat3d mToWorld;  // of gradients
 };
 
 class VolumeSceneReader final : public CurveReader {
   public:
     VolumeSceneReader(std::span<const VolumeSurface> volumes, const CurveScene* patches,
-                      const Vec3d& light)
-        : mSurfaces(volumes), mLight(light) {
+                      const Vec3d& light, int firstObject)
+        : mSurfaces(volumes), mLight(light), mFirstObject(firstObject) {
         mVolumes.reserve(volumes.size());
         for (const VolumeSurface& volume : volumes) mVolumes.emplace_back(volume);
         if (patches != nullptr) mPatches = patches->reader();
@@ -105,6 +142,24 @@ class VolumeSceneReader final : public CurveReader {
         return mVolumes[static_cast<std::size_t>(number)].foldAt(point);
     }
 
+    SeenSurface seenAt(double x, double y) override {
+        SeenSurface first = mPatches ? mPatches->seenAt(x, y) : SeenSurface();
+        for (std::size_t k = 0; k < mVolumes.size(); ++k) {
+            const auto place = mVolumes[k].firstAt(x, y);
+            if (!place) continue;
+            const double depth = mVolumes[k].seen(*place)[2];
+            if (first.object >= 0 && depth >= first.z) continue;
+            first = {mFirstObject + static_cast<int>(k), depth,
+                     mVolumes[k].cosineAt(*place, mLight)};
+        }
+        return first;
+    }
+
+    double cosineAt(const CurvePoint& point) override {
+        if (!isOfVolume(point.rule)) return mPatches->cosineAt(point);
+        return mVolumes[static_cast<std::size_t>(point.patch)].cosineAt(point, mLight);
+    }
+
   private:
     CurveEquations& equationsOf(const CurvePoint& p) {
         auto& equations = mEquations[{static_cast<int>(p.rule), p.patch, p.other, p.t}];
@@ -123,6 +178,7 @@ class VolumeSceneReader final : public CurveReader {
 
     std::span<const VolumeSurface> mSurfaces;
     Vec3d mLight;
+    int mFirstObject;
     std::vector<VolumeReader> mVolumes;
     std::unique_ptr<CurveReader> mPatches;
     // By rule, volumes and cosine.
@@ -132,7 +188,7 @@ class VolumeSceneReader final : public CurveReader {
 }  // namespace
 
 std::unique_ptr<CurveReader> VolumeScene::reader() const {
-    return std::make_unique<VolumeSceneReader>(mVolumes, mPatches, mLight);
+    return std::make_unique<VolumeSceneReader>(mVolumes, mPatches, mLight, mFirstObject);
 }
 
 }  // namespace bandvox

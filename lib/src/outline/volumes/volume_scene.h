@@ -14,10 +14,10 @@ namespace bandvox {
 class VolumeScene final : public CurveScene {
   public:
     /// The volumes, and the patches if they are not null, are kept by reference. `light`: of
-    /// isophotes, world, length 1.
+    /// isophotes, world, length 1. `firstObject`: the number of the first volume's object.
     VolumeScene(std::span<const VolumeSurface> volumes, const CurveScene* patches,
-                const openvdb::Vec3d& light)
-        : mVolumes(volumes), mPatches(patches), mLight(light) {}
+                const openvdb::Vec3d& light, int firstObject)
+        : mVolumes(volumes), mPatches(patches), mLight(light), mFirstObject(firstObject) {}
 
     std::unique_ptr<CurveReader> reader() const override;
 
@@ -25,6 +25,7 @@ class VolumeScene final : public CurveScene {
     std::span<const VolumeSurface> mVolumes;
     const CurveScene* mPatches;
     openvdb::Vec3d mLight;
+    int mFirstObject;
 };
 
 }  // namespace bandvox
