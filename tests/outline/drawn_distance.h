@@ -86,7 +86,7 @@ inline double largestDistance(const Outline& outline, const PatchModel& model,
     std::vector<ViewPatch> seen;
     for (const BezierPatch& patch : model.patches) seen.push_back(seenBy(view, patch, size));
     const auto exact =
-        surfaceCurves(model.patches, seen, options,
+        surfaceCurves({model.patches, seen, {0, 0, 1}}, options,
                       {.flatness = 0.01 * options.tolerance, .size = size}, silentProgress());
     std::vector<ChainGrid> truth(4, ChainGrid(size)), drawn(4, ChainGrid(size));
     for (const Curve& curve : exact) {

@@ -32,9 +32,9 @@ inline DrawnView draw(const std::vector<BezierPatch>& patches, const OutlineOpti
         drawn.seen.push_back(seenBy(view, patch, drawn.size));
     }
     const CurveSampling sampling{.flatness = 0.25 * options.tolerance, .size = drawn.size};
-    const auto curves = surfaceCurves(patches, drawn.seen, options, sampling, silentProgress());
-    drawn.pieces =
-        visiblePieces(curves, PatchScene(drawn.seen, drawn.size), sampling, silentProgress());
+    const LitPatches lit{patches, drawn.seen, lightDirection(contentOf(patches), options)};
+    const auto curves = surfaceCurves(lit, options, sampling, silentProgress());
+    drawn.pieces = visiblePieces(curves, PatchScene(lit, drawn.size), sampling, silentProgress());
     return drawn;
 }
 

@@ -12,11 +12,11 @@
 namespace bandvox {
 namespace {
 
-constexpr int kCells = 64;        // along a side of the page
 constexpr int kDepthOfParts = 4;  // to which patches are cut in advance
 // Of a patch, that is cut no more: it moves a fold by the square of that.
 constexpr double kSmallest = 1.0 / 8192;
 constexpr double kLargestBend = 0.4;  // of derivatives, relative to the mean
+constexpr double kBeside = 1e-10;     // parameters that differ by rounding
 
 using Part = Sheets::Part;
 
@@ -123,9 +123,25 @@ void visitQuarters(const Part& part, const ViewPatch& patch, const IsWanted& isW
 /// A line of sight, and what it has met.
 struct Sheets::Sight {
     double x, y, z;  // what is farther does not count
-    bool seeksFirst = false;
-    int count = 0;
-    Place last{};  // of those that are met: the first one, if that is sought
+    double sameDepth = 0;
+    std::vector<Place> met{};
+
+    // Parts reach beyond their borders by rounding: a place on a border of parts, or of patches,
+    // is found more than once, and counts once.
+    void add(const Place& place) {
+        const bool isKnown = std::any_of(met.begin(), met.end(), [&](const Place& other) {
+            if (std::abs(other.z - place.z) > sameDepth) return false;
+            if (other.patch != place.patch) return isOnBorder(other) && isOnBorder(place);
+            constexpr double kSamePlace = 1e-6;
+            return std::abs(other.u - place.u) + std::abs(other.v - place.v) < kSamePlace;
+        });
+        if (!isKnown) met.push_back(place);
+    }
+
+    static bool isOnBorder(const Place& p) {
+        const auto isEnd = [](double t) { return t <= kBeside || t >= 1 - kBeside; };
+        return isEnd(p.u) || isEnd(p.v);
+    }
 
     bool mayMeet(const Part& p) const {
         return x >= p.x0 && x <= p.x1 && y >= p.y0 && y <= p.y1 && p.z0 < z;
@@ -234,15 +250,11 @@ void Sheets::meet(const Part& part, Sight& sight) const {
         }
     }
     if (!isFound) return meetCut(part, sight);
-    // Parts share their borders, and each has two of its own.
-    const bool isInU =
-        u >= part.u0 && (u < part.u0 + part.size || (u <= 1 && part.u0 + part.size == 1));
-    const bool isInV =
-        v >= part.v0 && (v < part.v0 + part.size || (v <= 1 && part.v0 + part.size == 1));
-    if (!isInU || !isInV || !(p.z < sight.z)) return;
-    ++sight.count;
-    sight.last = {part.patch, std::clamp(u, 0.0, 1.0), std::clamp(v, 0.0, 1.0), p.z};
-    if (sight.seeksFirst) sight.z = p.z;
+    const auto isIn = [&](double t, double from) {
+        return t >= from - kBeside && t <= from + part.size + kBeside;
+    };
+    if (!isIn(u, part.u0) || !isIn(v, part.v0) || !(p.z < sight.z)) return;
+    sight.add({part.patch, std::clamp(u, 0.0, 1.0), std::clamp(v, 0.0, 1.0), p.z});
 }
 
 void Sheets::meetAll(Sight& sight) const {
@@ -252,16 +264,18 @@ void Sheets::meetAll(Sight& sight) const {
 }
 
 int Sheets::countBefore(const CurvePoint& point, double margin) const {
-    Sight sight{point.x, point.y, point.z - margin};
+    Sight sight{point.x, point.y, point.z - margin, sameDepth()};
     meetAll(sight);
-    return sight.count;
+    return static_cast<int>(sight.met.size());
 }
 
 std::optional<Sheets::Place> Sheets::firstAt(double x, double y) const {
-    Sight sight{x, y, std::numeric_limits<double>::infinity(), true};
+    Sight sight{x, y, std::numeric_limits<double>::infinity(), sameDepth()};
     meetAll(sight);
-    if (sight.count == 0) return std::nullopt;
-    return sight.last;
+    const auto first = std::min_element(sight.met.begin(), sight.met.end(),
+                                        [](const Place& a, const Place& b) { return a.z < b.z; });
+    if (first == sight.met.end()) return std::nullopt;
+    return *first;
 }
 
 }  // namespace bandvox

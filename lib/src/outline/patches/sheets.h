@@ -55,8 +55,11 @@ class Sheets {
     void meet(const Part& part, Sight& sight) const;
     void meetCut(const Part& part, Sight& sight) const;
     void meetAll(Sight& sight) const;
+    double sameDepth() const { return 1e-9 * kCells * (mCellWidth + mCellHeight); }
     std::size_t column(double x) const;
     std::size_t row(double y) const;
+
+    static constexpr int kCells = 64;  // along a side of the page
 
     std::span<const ViewPatch> mPatches;
     std::vector<Part> mParts;
