@@ -1,6 +1,7 @@
 // How right drawings of scenes are that hide, pass through and graze themselves, from all around:
 // free ends without a reason, samples that lines of sight contradict, distances from the true
-// curves, anchors and seconds. `outline_views [SCENE [AZIMUTHS]]`
+// curves, anchors and seconds. `outline_views [SCENE [AZIMUTHS [NUMBER]]]`; NUMBER: the only
+// azimuth to look from
 
 #include "outline/drawn_distance.h"
 #include "outline/drawn_view.h"
@@ -58,11 +59,13 @@ void measure(const Scene& scene, const OutlineOptions& options, const std::strin
 int main(int count, char** arguments) {
     const std::string wanted = count > 1 ? arguments[1] : "";
     const int azimuths = count > 2 ? std::atoi(arguments[2]) : 26;
+    const int only = count > 3 ? std::atoi(arguments[3]) : -1;
     for (const Scene& scene : scenes()) {
         if (!wanted.empty() && scene.name != wanted) continue;
         Totals totals;
         for (const double elevation : {-0.2, 0.35, 1.0}) {
             for (int k = 0; k < azimuths; ++k) {
+                if (only >= 0 && k != only) continue;
                 for (const bool isPerspective : {false, true}) {
                     const double azimuth = 2 * std::numbers::pi * (k + 0.2) / azimuths;
                     const std::string view = std::to_string(k) + "/" + std::to_string(elevation) +

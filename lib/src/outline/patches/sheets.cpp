@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kDepthOfParts = 4;  // to which patches are cut in advance
 // Of a patch, that is cut no more: it moves a fold by the square of that.
-constexpr double kSmallest = 1.0 / 8192;
+constexpr double kSmallest = 1.0 / 131072;
 constexpr double kLargestBend = 0.4;  // of derivatives, relative to the mean
 constexpr double kBeside = 1e-10;     // parameters that differ by rounding
 

@@ -21,7 +21,7 @@ class Sheets {
     explicit Sheets(std::span<const ViewPatch> patches);
 
     /// How many times the line of sight to a point of a curve meets patches that are nearer than it
-    /// by more than `margin`. Where a patch folds within 1/8192 of its parameters it is not met.
+    /// by more than `margin`. Where a patch folds within 1/131072 of its parameters it is not met.
     int countBefore(const CurvePoint& point, double margin) const;
 
     /// A place of a patch, and its depth.
