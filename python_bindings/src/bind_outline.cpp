@@ -51,6 +51,12 @@ struct DrawnPath {
     std::string object;
 };
 
+/// A region of a drawing, and the drawing's name for its object.
+struct DrawnRegion {
+    OutlineFill fill;
+    std::string object;
+};
+
 void saveDrawing(const DrawingObject& drawing, const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -104,6 +110,22 @@ StrokeOptions checked(const StrokeOptions& stroke) {
     requireStyle(stroke.color, "stroke_color");
     requireStyle(stroke.hiddenColor, "hidden_color");
     requireStyle(stroke.dash, "dash");
+    if (!(stroke.shade >= 0 && stroke.shade <= 1)) {
+        throw Error(ErrorKind::Usage,
+                    "shade is " + std::to_string(stroke.shade) + "; expected 0 to 1");
+    }
+    if (stroke.fillColors.empty()) {
+        throw Error(ErrorKind::Usage, "fill_colors are none; expected one at least");
+    }
+    for (const std::string& color : stroke.fillColors) {
+        const bool isColor =
+            (color.size() == 4 || color.size() == 7) && color[0] == '#' &&
+            color.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+        if (!isColor) {
+            throw Error(ErrorKind::Usage,
+                        "a fill colour is '" + color + "'; expected #rgb or #rrggbb");
+        }
+    }
     return stroke;
 }
 
@@ -173,7 +195,7 @@ std::shared_ptr<DrawingObject> draw(DrawnSources sources, const OutlineOptions& 
     auto& paths = drawing->outline.paths;
     std::erase_if(
         paths, [&](const OutlinePath& one) { return !isKept[static_cast<std::size_t>(one.kind)]; });
-    if (paths.empty()) {
+    if (paths.empty() && drawing->outline.fills.empty()) {
         throw Error(ErrorKind::Result,
                     "the drawing is empty: it has no lines of these kinds; expected some");
     }
@@ -191,13 +213,26 @@ py::list pathsOf(const DrawingObject& drawing) {
     return paths;
 }
 
-py::array pointsOf(const DrawnPath& drawn) {
+py::array arrayOf(const std::vector<std::array<double, 2>>& points) {
     std::vector<double> numbers;
-    for (const auto& point : drawn.path.points) {
-        numbers.insert(numbers.end(), point.begin(), point.end());
-    }
-    const auto count = static_cast<py::ssize_t>(drawn.path.points.size());
+    for (const auto& point : points) numbers.insert(numbers.end(), point.begin(), point.end());
+    const auto count = static_cast<py::ssize_t>(points.size());
     return ownedArray(std::move(numbers), {count, 2});
+}
+
+py::list regionsOf(const DrawingObject& drawing) {
+    py::list regions;
+    for (const OutlineFill& fill : drawing.outline.fills) {
+        regions.append(
+            DrawnRegion{fill, drawing.outline.objects[static_cast<std::size_t>(fill.object)]});
+    }
+    return regions;
+}
+
+py::list loopsOf(const DrawnRegion& region) {
+    py::list loops;
+    for (const auto& loop : region.fill.loops) loops.append(arrayOf(loop));
+    return loops;
 }
 
 void bindDrawing(py::module_& module) {
@@ -217,9 +252,19 @@ void bindDrawing(py::module_& module) {
         .def_property_readonly(
             "closed", [](const DrawnPath& self) { return self.path.closed; },
             "Whether its last point is the first one again.")
-        .def_property_readonly("points", &pointsOf,
-                               "(3 n + 1, 2) float64, millimetres of the page, y downward: an "
-                               "anchor, and for each curve two handles and the next anchor.");
+        .def_property_readonly(
+            "points", [](const DrawnPath& self) { return arrayOf(self.path.points); },
+            "(3 n + 1, 2) float64, millimetres of the page, y downward: an "
+            "anchor, and for each curve two handles and the next anchor.");
+    py::class_<DrawnRegion>(module, "DrawnRegion",
+                            "A region of a Drawing in which one object is seen, in one tone.")
+        .def_readonly("object", &DrawnRegion::object, "The name of the object.")
+        .def_property_readonly(
+            "tone", [](const DrawnRegion& self) { return self.fill.tone; }, "0: the darkest.")
+        .def_property_readonly(
+            "loops", &loopsOf,
+            "Its borders, a (3 n + 1, 2) float64 each, as DrawnPath.points, closed. What an odd "
+            "number of them surrounds is inside.");
     py::class_<DrawingObject, std::shared_ptr<DrawingObject>>(
         module, "Drawing", "A drawing of lines, as outline makes it. A notebook shows it.")
         .def_property_readonly(
@@ -229,6 +274,8 @@ void bindDrawing(py::module_& module) {
             },
             "Width and height, millimetres.")
         .def_property_readonly("paths", &pathsOf, "Its lines, a DrawnPath each.")
+        .def_property_readonly("regions", &regionsOf,
+                               "What is filled, a DrawnRegion each; they do not overlap.")
         .def("svg", &svgOf, "The text of an SVG file.")
         .def("save", &saveDrawing, py::arg("path"),
              "Writes an .svg, .pdf or .eps file, whole or not at all.")
@@ -253,19 +300,24 @@ void bindOutline(py::module_& module) {
            const py::object& lookat, const py::object& up, const py::object& from,
            const std::string& camera, double focal, double aperture, double frame,
            const std::optional<double>& iso, const std::vector<double>& isophotes,
-           const std::array<double, 3>& light, int threads, const py::object& progress) {
+           const std::array<double, 3>& light, const std::string& fill,
+           const std::vector<double>& tones, std::vector<std::string> fillColors, double shade,
+           int threads, const py::object& progress) {
             OutlineOptions options;
             options.isophotes = isophotes;
             options.light = openvdb::Vec3d(light.data());
+            options.fill =
+                static_cast<OutlineFillKind>(choiceOf(fill, {"none", "flat", "toon"}, "fill"));
+            options.tones = tones;
             setPage(options, page, margin);
             options.tolerance = tolerance;
             options.creaseAngle = creaseAngle;
             options.hidden = hidden;
             options.camera = cameraOf({eye, lookat, up, from, camera, focal, aperture, frame});
-            return draw(
-                sourcesOf(source, iso), options, kinds,
-                {width, hiddenWidth, std::move(color), std::move(hiddenColor), std::move(dash)},
-                threads, progress);
+            return draw(sourcesOf(source, iso), options, kinds,
+                        {width, hiddenWidth, std::move(color), std::move(hiddenColor),
+                         std::move(dash), std::move(fillColors), shade},
+                        threads, progress);
         },
         py::arg("source"), py::kw_only(),
         py::arg("page") = std::array<double, 2>{standard.width, standard.height},
@@ -281,13 +333,18 @@ void bindOutline(py::module_& module) {
         py::arg("isophotes") = standard.isophotes,
         py::arg("light") =
             std::array<double, 3>{standard.light[0], standard.light[1], standard.light[2]},
+        py::arg("fill") = "none", py::arg("tones") = standard.tones,
+        py::arg("fill_colors") = stroke.fillColors, py::arg("shade") = stroke.shade,
         py::arg("threads") = 0, py::arg("progress") = py::none(),
         R"(Draws free-form surfaces and volumes as lines; returns a Drawing.
 
 source: Patches, a .bpt or .obj file of them, a Grid, or a list of such. iso: the value of grids
-that is the surface, by default as they say, else 0.5, or 0 of a level set. isophotes: of grids,
+that is the surface, by default as they say, else 0.5, or 0 of a level set. isophotes:
 lines where the cosine of the angle between the normal and the direction to the light is one of
-these; light: along the camera's right, up and back. page: width and height, millimetres; margin: what
+these; light: along the camera's right, up and back. fill: what is between lines, 'none', 'flat', a
+colour for each object, or 'toon', tones of it; tones: cosines of that angle at which they change,
+ascending; fill_colors: of the objects, one after the other, '#rrggbb'; shade: the darkest tone, as
+a part of the colour. page: width and height, millimetres; margin: what
 stays free. tolerance: how far lines may be from the true ones, millimetres. crease_angle: patches
 that meet at more have a line between, degrees. kinds: which lines are drawn. hidden: keep those
 behind something. stroke, hidden_stroke: widths, millimetres; stroke_color, hidden_color: as in CSS;

@@ -172,6 +172,48 @@ TEST(Outline, DrawsVolumesMeshesAndShapes) {
     EXPECT_NE(readText(folder / "mixed.pdf").find("isophote"), std::string::npos);
 }
 
+TEST(Outline, FillsWhatIsBetweenLines) {
+    const TemporaryFolder folder;
+    const auto run = [&](const Names& words) {
+        return runBandvox(words, {.folder = folder.path()});
+    };
+    const RunResult flat = run({"outline", kTeapotFile, "-o", "flat.svg", "--fill", "flat",
+                                "--fill-colors", "#abc,#123456", "--up", "0,0,1"});
+    ASSERT_EQ(flat.status, 0) << flat.err;
+    const std::string svg = readText(folder / "flat.svg");
+    EXPECT_EQ(occurrences(svg, "fill=\"#aabbcc\""), occurrences(svg, "class=\"tone-0\""));
+    EXPECT_GE(occurrences(svg, "class=\"tone-0\""), 1U);
+    EXPECT_LT(svg.find("id=\"fills\""), svg.find("id=\"object-1\""));
+    for (const char* const name : {"toon.svg", "toon.pdf", "toon.eps"}) {
+        const RunResult toon = run({"outline", kTeapotFile, "-o", name, "--fill", "toon", "--tones",
+                                    "0.1,0.5,0.9", "--shade", "0", "--no-hidden"});
+        ASSERT_EQ(toon.status, 0) << toon.err;
+        EXPECT_NE((toon.out + toon.err).find("regions"), std::string::npos);
+    }
+    const std::string tones = readText(folder / "toon.svg");
+    for (const char* const tone : {"tone-0", "tone-1", "tone-2", "tone-3"}) {
+        EXPECT_NE(tones.find(tone), std::string::npos) << tone;
+    }
+    EXPECT_NE(tones.find("fill=\"#000000\""), std::string::npos);
+    EXPECT_EQ(tones.find("isophote"), std::string::npos);
+    EXPECT_NE(readText(folder / "toon.pdf").find("\nB*\n"), std::string::npos);
+    EXPECT_NE(readText(folder / "toon.eps").find("eofill"), std::string::npos);
+    // Fills alone, without a line.
+    EXPECT_EQ(
+        run({"outline", kTeapotFile, "-o", "bare.svg", "--fill", "flat", "--kinds", "isophote"})
+            .status,
+        0);
+    for (const Names& words :
+         {Names{"--fill", "plaid"}, Names{"--fill-colors", "#123"}, Names{"--tones", "0.5"},
+          Names{"--fill", "toon", "--tones", "0.5,0.2"}, Names{"--fill", "flat", "--shade", "0.5"},
+          Names{"--fill", "flat", "--fill-colors", "red"},
+          Names{"--fill", "flat", "--fill-colors", "#123,"}}) {
+        Names all{"outline", kTeapotFile, "-o", "wrong.svg"};
+        all.insert(all.end(), words.begin(), words.end());
+        EXPECT_EQ(run(all).status, 2) << words.back();
+    }
+}
+
 TEST(Outline, RefusesOptionsOfVolumesThatHaveNoUse) {
     const TemporaryFolder folder;
     const auto statusOf = [&](Names words) {
@@ -184,7 +226,7 @@ TEST(Outline, RefusesOptionsOfVolumesThatHaveNoUse) {
                   .status,
               0);
     EXPECT_EQ(statusOf({kTeapotFile, "-r", "64"}), 2);
-    EXPECT_EQ(statusOf({kTeapotFile, "--isophotes", "0.5"}), 2);
+    EXPECT_EQ(statusOf({kTeapotFile, "--iso", "0.5"}), 2);
     EXPECT_EQ(statusOf({"ball.vdb", "--order", "4"}), 2);
     EXPECT_EQ(statusOf({"ball.vdb", "--isophotes", "1"}), 2);
     EXPECT_EQ(statusOf({"ball.vdb", "--light", "0,0,0"}), 2);

@@ -149,6 +149,39 @@ def test_grids_are_drawn_by_their_contours():
         bandvox.outline([ball, 3])
 
 
+def area(points):
+    """Within a closed path."""
+    t = np.linspace(0, 1, 50, endpoint=False)[:, np.newaxis]
+    places = [(1 - t)**3 * a + 3 * (1 - t)**2 * t * b + 3 * (1 - t) * t**2 * c + t**3 * d
+              for a, b, c, d in (points[k:k + 4] for k in range(0, len(points) - 1, 3))]
+    x, y = np.concatenate(places).T
+    return 0.5 * abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+
+
+def test_what_is_between_lines_is_filled():
+    ball = bandvox.bandlimit("shape:sphere", resolution=48)
+    view = {"camera": "orthographic", "eye": (0, 0, 5), "lookat": (0, 0, 0), "frame": 4,
+            "page": (100, 100), "margin": 0}
+    assert bandvox.outline(ball, **view).regions == []
+    flat = bandvox.outline(ball, fill="flat", fill_colors=["#123456"], **view)
+    assert [(region.object, region.tone, len(region.loops)) for region in flat.regions] == [
+        (flat.paths[0].object, 0, 1)]
+    radius = np.linalg.norm(flat.paths[0].points[0] - 50)
+    assert area(flat.regions[0].loops[0]) == pytest.approx(np.pi * radius**2, rel=2e-3)
+    assert 'fill="#123456"' in flat.svg()
+    toon = bandvox.outline(ball, fill="toon", tones=[0.5], light=(0, 0, 1), **view)
+    dark, light = toon.regions
+    assert (dark.tone, len(dark.loops), light.tone, len(light.loops)) == (0, 2, 1, 1)
+    # What is lit is within 60 degrees of the light, which is behind the eye.
+    radii = np.linalg.norm(light.loops[0][::3] - 50, axis=1) / 25
+    np.testing.assert_allclose(radii, np.sqrt(0.75), atol=1e-2)
+    assert {path.kind for path in toon.paths} == {"contour"}
+    for wrong in [{"fill": "plaid"}, {"fill_colors": ["red"]}, {"fill_colors": []},
+                  {"shade": 2}, {"fill": "toon", "tones": [0.5, 0.2]}]:
+        with pytest.raises(bandvox.UsageError):
+            bandvox.outline(ball, **wrong)
+
+
 def test_a_cylinder_seen_from_the_side_is_a_rectangle(cylinder):
     found = bandvox.outline(cylinder, camera="orthographic", eye=(9, 9, 1), lookat=(0, 0, 1),
                             up=(0, 0, 1), frame=4, page=(100, 100), margin=0)
