@@ -243,4 +243,23 @@ std::optional<double> SurfaceBlocks::entry(const Ray& ray) const {
     return blockRay.t0();
 }
 
+bool SurfaceBlocks::touches(const openvdb::BBoxd& box) const {
+    constexpr double kMost = 64;  // blocks that are looked at
+    const openvdb::Vec3d low = box.min() / kSide, high = box.max() / kSide;
+    if (empty() || !mBox.hasOverlap({low, high})) return false;
+    if ((high - low).length() > kMost) return true;
+    const openvdb::Coord first = openvdb::Coord::floor(low), last = openvdb::Coord::floor(high);
+    if (openvdb::CoordBBox(first, last).volume() > static_cast<openvdb::Index64>(kMost)) {
+        return true;
+    }
+    for (int x = first[0]; x <= last[0]; ++x) {
+        for (int y = first[1]; y <= last[1]; ++y) {
+            for (int z = first[2]; z <= last[2]; ++z) {
+                if (mBlocks.isValueOn({x, y, z})) return true;
+            }
+        }
+    }
+    return false;
+}
+
 }  // namespace bandvox

@@ -31,6 +31,9 @@ class SurfaceBlocks {
     /// The t ≥ 0 where a ray comes into the box of all blocks; nothing if it passes by.
     std::optional<double> entry(const Ray& ray) const;
 
+    /// False if no block is in a box; true if one is, or if the box is large and near them.
+    bool touches(const openvdb::BBoxd& box) const;
+
     /// Calls `visit(t0, t1)` for each block on the way of origin + t·direction, 0 ≤ t ≤ `end`, in
     /// order; stops when it returns true. `direction` may have any length but 0.
     template <typename Visitor>

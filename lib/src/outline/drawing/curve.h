@@ -15,19 +15,21 @@ enum class CurveRule {
     Border,          ///< a straight line of the patch's parameters
     Meeting,         ///< in two patches
     Isophote,        ///< of one angle to the light on a patch
+    Piercing,        ///< on a patch where it passes through the surface of a volume
     VolumeFold,      ///< ∇f~·v = 0 on a volume's surface
     VolumeMeeting,   ///< in the surfaces of two volumes
     VolumeIsophote,  ///< of one angle to the light on a volume's surface
 };
 
-/// Whether a rule is one of volumes.
+/// Whether a rule is one of volumes alone.
 inline bool isOfVolume(CurveRule rule) {
     return rule >= CurveRule::VolumeFold;
 }
 
 /// A point of a curve on patches, where the view sees it. Of a curve on a volume's surface `patch`
 /// is the number of that volume, `other` that of the other one of an intersection, (u, v, s) the
-/// place in index coordinates. Of an isophote t is the cosine that makes it.
+/// place in index coordinates; where a patch passes through a volume `other` is the volume's. Of an
+/// isophote t is the cosine that makes it.
 struct CurvePoint {
     double x = 0, y = 0, z = 0;  ///< on the page, and depth
     double tx = 1, ty = 0;       ///< direction of the curve on the page, length 1, without a sign

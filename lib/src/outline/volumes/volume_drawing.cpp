@@ -6,11 +6,13 @@
 #include "outline/patches/surface_curves.h"
 #include "outline/volumes/curve_places.h"
 #include "outline/volumes/march_curves.h"
+#include "outline/volumes/pierced_patches.h"
 #include "render/picture_request.h"
 
 #include <bandvox/core/error.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace bandvox {
@@ -130,8 +132,15 @@ VolumeDrawing::VolumeDrawing(const std::vector<OutlineVolume>& volumes, const Pa
             mCurves.push_back(std::move(curve));
         }
     }
+    const bool isFilled = options.fill != OutlineFillKind::None;
+    if (!mPatches.empty() && (options.intersections || isFilled)) {
+        for (const VolumeSurface& surface : mSurfaces) {
+            std::vector<Curve> curves = piercingCurves(mLit, surface, sampling, progress);
+            std::move(curves.begin(), curves.end(), std::back_inserter(mCurves));
+        }
+    }
     if (!mPatches.empty()) mPatchScene = std::make_unique<PatchScene>(mLit, sampling.size);
-    mScene = std::make_unique<VolumeScene>(mSurfaces, mPatchScene.get(), light, firstObject);
+    mScene = std::make_unique<VolumeScene>(mSurfaces, mPatchScene.get(), mLit, firstObject);
 }
 
 }  // namespace bandvox

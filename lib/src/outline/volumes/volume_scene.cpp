@@ -1,5 +1,7 @@
 #include "outline/volumes/volume_scene.h"
 
+#include "outline/volumes/pierced_patches.h"
+
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -106,14 +108,20 @@ class VolumeReader {
 class VolumeSceneReader final : public CurveReader {
   public:
     VolumeSceneReader(std::span<const VolumeSurface> volumes, const CurveScene* patches,
-                      const Vec3d& light, int firstObject)
-        : mSurfaces(volumes), mLight(light), mFirstObject(firstObject) {
+                      const LitPatches& lit, int firstObject)
+        : mSurfaces(volumes),
+          mLit(lit),
+          mLight(lit.light[0], lit.light[1], lit.light[2]),
+          mFirstObject(firstObject) {
         mVolumes.reserve(volumes.size());
         for (const VolumeSurface& volume : volumes) mVolumes.emplace_back(volume);
         if (patches != nullptr) mPatches = patches->reader();
     }
 
     CurvePoint between(const CurvePoint& a, const CurvePoint& b, double share) override {
+        const bool isPiercing =
+            a.rule == CurveRule::Piercing && b.rule == CurveRule::Piercing && a.other == b.other;
+        if (isPiercing && a.patch == b.patch) return finderOf(a.other).between(a, b, share);
         if (!isOfVolume(a.rule) && !isOfVolume(b.rule)) return mPatches->between(a, b, share);
         CurvePoint point = share < 0.5 ? a : b;
         if (a.rule == b.rule && a.patch == b.patch) {
@@ -129,14 +137,18 @@ class VolumeSceneReader final : public CurveReader {
         int count = mPatches ? mPatches->countBefore(point) : 0;
         for (std::size_t k = 0; k < mVolumes.size(); ++k) {
             const auto number = static_cast<int>(k);
-            const bool isOwn =
-                isOfVolume(point.rule) && (point.patch == number || point.other == number);
+            const bool isOfOther = isOfVolume(point.rule) || point.rule == CurveRule::Piercing;
+            const bool isOwn = (isOfVolume(point.rule) && point.patch == number) ||
+                               (isOfOther && point.other == number);
             count += isOwn ? mVolumes[k].countBeforeOwn(point) : mVolumes[k].countBefore(point);
         }
         return count;
     }
 
     double foldAt(const CurvePoint& point, bool isOther) override {
+        if (point.rule == CurveRule::Piercing && isOther) {
+            return mVolumes[static_cast<std::size_t>(point.other)].foldAt(point);
+        }
         if (!isOfVolume(point.rule)) return mPatches->foldAt(point, isOther);
         const int number = isOther && point.other >= 0 ? point.other : point.patch;
         return mVolumes[static_cast<std::size_t>(number)].foldAt(point);
@@ -161,6 +173,15 @@ class VolumeSceneReader final : public CurveReader {
     }
 
   private:
+    PiercingFinder& finderOf(int volume) {
+        auto& finder = mFinders[volume];
+        if (!finder) {
+            finder =
+                std::make_unique<PiercingFinder>(mLit, mSurfaces[static_cast<std::size_t>(volume)]);
+        }
+        return *finder;
+    }
+
     CurveEquations& equationsOf(const CurvePoint& p) {
         auto& equations = mEquations[{static_cast<int>(p.rule), p.patch, p.other, p.t}];
         const VolumeSurface& surface = mSurfaces[static_cast<std::size_t>(p.patch)];
@@ -177,10 +198,12 @@ class VolumeSceneReader final : public CurveReader {
     }
 
     std::span<const VolumeSurface> mSurfaces;
+    const LitPatches& mLit;
     Vec3d mLight;
     int mFirstObject;
     std::vector<VolumeReader> mVolumes;
     std::unique_ptr<CurveReader> mPatches;
+    std::map<int, std::unique_ptr<PiercingFinder>> mFinders;  // by volume
     // By rule, volumes and cosine.
     std::map<std::tuple<int, int, int, double>, std::unique_ptr<CurveEquations>> mEquations;
 };
@@ -188,7 +211,7 @@ class VolumeSceneReader final : public CurveReader {
 }  // namespace
 
 std::unique_ptr<CurveReader> VolumeScene::reader() const {
-    return std::make_unique<VolumeSceneReader>(mVolumes, mPatches, mLight, mFirstObject);
+    return std::make_unique<VolumeSceneReader>(mVolumes, mPatches, mLit, mFirstObject);
 }
 
 }  // namespace bandvox
