@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <map>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -212,6 +214,43 @@ TEST(Outline, FillsWhatIsBetweenLines) {
         all.insert(all.end(), words.begin(), words.end());
         EXPECT_EQ(run(all).status, 2) << words.back();
     }
+}
+
+// The paths of an SVG file, and their ids.
+std::map<std::string, std::string> pathsOf(const std::string& svg) {
+    const auto attribute = [](const std::string& tag, const std::string& name) {
+        std::smatch found;
+        const std::regex pattern("\\s" + name + "=\"([^\"]*)\"");
+        return std::regex_search(tag, found, pattern) ? found[1].str() : std::string();
+    };
+    std::map<std::string, std::string> paths;
+    for (std::size_t at = svg.find("<path"); at != std::string::npos; at = svg.find("<path", at)) {
+        const std::size_t end = svg.find('>', at);
+        const std::string tag = svg.substr(at, end - at);
+        paths[attribute(tag, "id")] = attribute(tag, "class") + attribute(tag, "d");
+        at = end;
+    }
+    return paths;
+}
+
+TEST(Outline, SurvivesInkscape) {
+    if (!hasProgram("inkscape")) GTEST_SKIP() << "there is no inkscape";
+    const TemporaryFolder folder;
+    ASSERT_EQ(
+        runBandvox({"outline", kTeapotFile, "-o", "drawing.svg", "--up", "0,0,1", "--fill", "toon"},
+                   {.folder = folder.path()})
+            .status,
+        0);
+    const RunResult saved =
+        runProgram({"inkscape", "drawing.svg", "--export-type=svg", "--export-filename=again.svg"},
+                   {.folder = folder.path()});
+    ASSERT_EQ(saved.status, 0) << saved.err;
+    const std::string before = readText(folder / "drawing.svg");
+    const std::string after = readText(folder / "again.svg");
+    EXPECT_GT(pathsOf(before).size(), 30U);
+    EXPECT_EQ(pathsOf(before), pathsOf(after));
+    EXPECT_EQ(occurrences(before, "inkscape:groupmode=\"layer\""),
+              occurrences(after, "inkscape:groupmode=\"layer\""));
 }
 
 TEST(Outline, RefusesOptionsOfVolumesThatHaveNoUse) {

@@ -305,7 +305,8 @@ std::vector<std::array<double, 2>> fitCubics(const Curve& curve, double toleranc
         if (!points[i].corner && i + 1 < points.size()) continue;
         SmoothRun run = runOf(points, first, i, kGap * tolerance);
         first = i;
-        if (run.points.size() < 2) continue;
+        // Between corners that nobody can tell apart there is nothing to draw.
+        if (run.points.size() < 2 || run.lengths.back() < 1e-3 * tolerance) continue;
         const bool isLoop =
             curve.closed && path.empty() && i + 1 == points.size() && !points.front().corner;
         // The end of a smooth loop is its start.

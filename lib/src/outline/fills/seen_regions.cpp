@@ -30,6 +30,15 @@ struct RegionBorder {
     std::vector<std::array<double, 2>> path;  // as OutlinePath has it
 };
 
+double extentOf(const Curve& curve) {
+    double extent = 0;
+    const CurvePoint& first = curve.points.front();
+    for (const CurvePoint& p : curve.points) {
+        extent = std::max(extent, std::hypot(p.x - first.x, p.y - first.y));
+    }
+    return extent;
+}
+
 /// Goes around what shows the same.
 class RegionTracer {
   public:
@@ -49,7 +58,9 @@ class RegionTracer {
         findBorders();
         parallelFor(static_cast<std::int64_t>(mBorders.size()), [&](std::int64_t k) {
             RegionBorder& border = mBorders[static_cast<std::size_t>(k)];
-            border.path = fitCubics(curveAlong(border), tolerance);
+            const Curve curve = curveAlong(border);
+            // What nobody can see would only be a path that stands still.
+            if (extentOf(curve) > 1e-2 * tolerance) border.path = fitCubics(curve, tolerance);
         });
         return regions();
     }
@@ -176,6 +187,7 @@ class RegionTracer {
             border = mBorderOf[indexOf(h)];
             if (begins) append(loop, h);
         }
+        if (!loop.empty()) loop.back() = loop.front();
         return loop;
     }
 
