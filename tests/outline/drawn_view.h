@@ -63,6 +63,16 @@ inline std::string describe(const CurvePoint& p, OutlineKind kind) {
     return text;
 }
 
+/// Whether a line turns back or sharply within a distance of a place.
+inline bool isNearCorner(const DrawnView& drawn, const CurvePoint& p, double reach) {
+    for (const VisiblePiece& piece : drawn.pieces) {
+        for (const CurvePoint& q : piece.curve.points) {
+            if (q.corner && std::hypot(q.x - p.x, q.y - p.y) < reach) return true;
+        }
+    }
+    return false;
+}
+
 inline Findings checkPiece(const DrawnView& drawn, const VisiblePiece& piece,
                            const ExactSheets& oracle) {
     const auto& [curve, hidden] = piece;
@@ -87,6 +97,7 @@ inline Findings checkPiece(const DrawnView& drawn, const VisiblePiece& piece,
         const double step = lengths[i] - lengths[i - 1];
         const CurvePoint p = pointBetween(drawn.seen, curve.points[i - 1], curve.points[i],
                                           step > 0 ? (at - lengths[i - 1]) / step : 0);
+        if (isNearCorner(drawn, p, 0.2 * drawn.pixel)) continue;
         const auto depths = oracle.depthsBefore(p.x, p.y, p.z - margin);
         ++result.samples;
         if (static_cast<int>(depths.size()) != hidden) ++result.miscounted;
@@ -103,7 +114,8 @@ inline Findings checkPiece(const DrawnView& drawn, const VisiblePiece& piece,
 }
 
 /// Compares ten or more samples of each piece with exact lines of sight; what is within 0.2 pixels
-/// of a piece's ends is left out. `wrong`: seen or not; `miscounted`: how many are in front.
+/// of a piece's ends or of a corner is left out. `wrong`: seen or not; `miscounted`: how many are
+/// in front. in front.
 inline Findings checkVisibility(const DrawnView& drawn) {
     const ExactSheets oracle(drawn.seen);
     std::vector<Findings> found(drawn.pieces.size());
@@ -146,16 +158,6 @@ inline double distanceFromLines(const DrawnView& drawn, std::size_t own, const C
         }
     }
     return nearest;
-}
-
-/// Whether a line turns back or sharply within a distance of a place.
-inline bool isNearCorner(const DrawnView& drawn, const CurvePoint& p, double reach) {
-    for (const VisiblePiece& piece : drawn.pieces) {
-        for (const CurvePoint& q : piece.curve.points) {
-            if (q.corner && std::hypot(q.x - p.x, q.y - p.y) < reach) return true;
-        }
-    }
-    return false;
 }
 
 /// Every free end of a line that is seen has to be at a cusp, or on another line that is seen; one

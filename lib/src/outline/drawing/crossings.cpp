@@ -70,42 +70,73 @@ class CrossingSearch {
         const double alongA = ((r.x - p.x) * by - (r.y - p.y) * bx) / area;
         const double alongB = ((r.x - p.x) * ay - (r.y - p.y) * ax) / area;
         if (alongA < 0 || alongA > 1 || alongB < 0 || alongB > 1) return;
-        Crossing at{alongA, alongB, {}, {}};
-        if (!settle({&p, &q}, {&r, &s}, at)) return;
+        Spot onA{a, alongA, {}}, onB{b, alongB, {}};
+        if (!settle(onA, onB) || areNeighbours(onA.segment, onB.segment)) return;
         // Both are in the same place where a surface passes through a fold.
         const double near = 1e-5 * mSize;
-        if (occludes(second) && at.onB.z < at.onA.z + near) {
-            mPlaces[a.curve].push_back(a.index + at.alongA);
-        }
-        if (occludes(first) && at.onA.z < at.onB.z + near) {
-            mPlaces[b.curve].push_back(b.index + at.alongB);
-        }
+        if (occludes(second) && onB.at.z < onA.at.z + near) mPlaces[a.curve].push_back(onA.place());
+        if (occludes(first) && onA.at.z < onB.at.z + near) mPlaces[b.curve].push_back(onB.place());
     }
 
     // A segment's ends.
     struct Ends {
         const CurvePoint *from, *to;
     };
-    struct Crossing {
-        double alongA, alongB;  // shares of both segments
-        CurvePoint onA, onB;
+    Ends endsOf(const CurveSegment& segment) const {
+        return {&mGrid.start(segment), &mGrid.end(segment)};
+    }
+
+    // A place of a curve.
+    struct Spot {
+        CurveSegment segment;
+        double share;
+        CurvePoint at;
+
+        double place() const { return segment.index + share; }
     };
 
-    // From where chords cross to where the curves do; false if that is beyond the segments.
-    bool settle(const Ends& a, const Ends& b, Crossing& at) const {
-        const double ax = a.to->x - a.from->x, ay = a.to->y - a.from->y;
-        const double bx = b.to->x - b.from->x, by = b.to->y - b.from->y;
-        const double area = ax * by - ay * bx;
-        // Parameters go along chords nearly evenly: each round leaves a small part of the error.
-        for (int round = 0; round < 12; ++round) {
-            at.onA = mReader.between(*a.from, *a.to, at.alongA);
-            at.onB = mReader.between(*b.from, *b.to, at.alongB);
-            const double gx = at.onB.x - at.onA.x, gy = at.onB.y - at.onA.y;
-            if (std::hypot(gx, gy) < 1e-3 * mFlatness) break;
-            at.alongA = std::clamp(at.alongA + (gx * by - gy * bx) / area, 0.0, 1.0);
-            at.alongB = std::clamp(at.alongB + (gx * ay - gy * ax) / area, 0.0, 1.0);
+    void read(Spot& spot) const {
+        const Ends ends = endsOf(spot.segment);
+        spot.at = mReader.between(*ends.from, *ends.to, spot.share);
+    }
+
+    // Along the curve; from one segment no farther than into the next.
+    void move(Spot& spot, double by) const {
+        const double share = spot.share + by;
+        const auto count = static_cast<std::uint32_t>(mCurves[spot.segment.curve].points.size());
+        const bool isClosed = mCurves[spot.segment.curve].closed;
+        std::uint32_t& index = spot.segment.index;
+        spot.share = std::clamp(share, 0.0, 1.0);
+        if (share > 1 && (isClosed || index + 2 < count)) {
+            index = index + 2 < count ? index + 1 : 0;
+            spot.share = std::min(share - 1, 1.0);
+        } else if (share < 0 && (isClosed || index > 0)) {
+            index = index > 0 ? index - 1 : count - 2;
+            spot.share = std::max(share + 1, 0.0);
         }
-        return std::hypot(at.onB.x - at.onA.x, at.onB.y - at.onA.y) < 2 * mFlatness;
+    }
+
+    // From where chords cross to where the curves do, which may be in a segment beside; false if
+    // they do not cross there.
+    bool settle(Spot& a, Spot& b) const {
+        double away = 0;
+        for (int round = 0; round < 12; ++round) {
+            read(a);
+            read(b);
+            const double gx = b.at.x - a.at.x, gy = b.at.y - a.at.y;
+            away = std::hypot(gx, gy);
+            if (away < 1e-3 * mFlatness) return true;
+            const Ends chordA = endsOf(a.segment), chordB = endsOf(b.segment);
+            const double ax = chordA.to->x - chordA.from->x, ay = chordA.to->y - chordA.from->y;
+            const double bx = chordB.to->x - chordB.from->x, by = chordB.to->y - chordB.from->y;
+            const double area = ax * by - ay * bx;
+            if (area == 0) break;
+            // Parameters go along chords nearly evenly: each round leaves a small part of the
+            // error.
+            move(a, (gx * by - gy * bx) / area);
+            move(b, (gx * ay - gy * ax) / area);
+        }
+        return away < 2 * mFlatness;
     }
 
     // The share of a segment where the curve is nearest to a place, from that of the chord.

@@ -296,7 +296,7 @@ std::vector<CurvePoint> fromCorner(const Curve& curve) {
 
 std::vector<std::array<double, 2>> fitCubics(const Curve& curve, double tolerance) {
     // What is not seen between points is little.
-    constexpr double kShare = 0.85, kGap = 100;
+    constexpr double kShare = 0.75, kGap = 100;
     const double least = kShare * tolerance;
     const std::vector<CurvePoint> points = fromCorner(curve);
     std::vector<std::array<double, 2>> path;
