@@ -31,8 +31,8 @@
 namespace bandvox::app {
 namespace {
 
-const std::vector<std::string> kOutlineKinds{"contour", "boundary", "crease", "intersection",
-                                             "isophote"};
+const std::vector<std::string> kOutlineKinds{"contour",      "boundary", "crease",
+                                             "intersection", "isophote", "suggestive"};
 
 const std::vector<std::string> kFillKinds{"none", "flat", "toon"};
 
@@ -90,6 +90,9 @@ const CommandTable& outlineTable() {
                 {"isophotes", 0, "C,...", "none",
                  "Also lines where the cosine of the angle between normal and light is C, as in "
                  "0.3,0.7.",
+                 lines},
+                {"suggestive", 0, "STRENGTH", "none",
+                 "Of volumes and meshes: also suggestive contours, the more the lower, as in 20.",
                  lines},
                 {"fill",
                  0,
@@ -246,6 +249,9 @@ OutlineRequest parseOutline(const CommandLine& line) {
     options.camera = readCamera(
         line, (options.height - 2 * options.margin) / (options.width - 2 * options.margin));
     options.isophotes = readCosines(line, "isophotes", {});
+    if (line.has("suggestive")) {
+        options.suggestive = line.number("suggestive", {.low = 0, .high = 1e9}, 0);
+    }
     readFill(line, request);
     options.light = line.vector("light", kAnyPlace).value_or(options.light);
     request.kinds = line.choices("kinds", kOutlineKinds);

@@ -111,7 +111,7 @@ OutlineInputs readOutlineInputs(const CommandLine& line) {
     requireUse(line, {"grid"}, hasVolume, "volumes (.vdb)");
     requireUse(line, {"resolution", "voxel-size", "cutoff", "order"}, hasSolid,
                "meshes and built-in shapes");
-    requireUse(line, {"iso"}, hasVolume || hasSolid, "volumes and meshes");
+    requireUse(line, {"iso", "suggestive"}, hasVolume || hasSolid, "volumes and meshes");
     inputs.grid = line.text("grid");
     inputs.iso = readIso(line, {});
     readSize(line, inputs.density.resolution, inputs.density.voxelSize);

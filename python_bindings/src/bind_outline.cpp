@@ -35,8 +35,8 @@ namespace py = pybind11;
 namespace {
 
 const std::vector<std::string>& lineKinds() {
-    static const std::vector<std::string> names{"contour", "boundary", "crease", "intersection",
-                                                "isophote"};
+    static const std::vector<std::string> names{"contour",      "boundary", "crease",
+                                                "intersection", "isophote", "suggestive"};
     return names;
 }
 
@@ -244,7 +244,7 @@ void bindDrawing(py::module_& module) {
             [](const DrawnPath& self) {
                 return lineKinds()[static_cast<std::size_t>(self.path.kind)];
             },
-            "'contour', 'boundary', 'crease', 'intersection' or 'isophote'.")
+            "'contour', 'boundary', 'crease', 'intersection', 'isophote' or 'suggestive'.")
         .def_readonly("object", &DrawnPath::object, "The name of the object that it belongs to.")
         .def_property_readonly(
             "hidden", [](const DrawnPath& self) { return self.path.hidden; },
@@ -300,11 +300,13 @@ void bindOutline(py::module_& module) {
            const py::object& lookat, const py::object& up, const py::object& from,
            const std::string& camera, double focal, double aperture, double frame,
            const std::optional<double>& iso, const std::vector<double>& isophotes,
-           const std::array<double, 3>& light, const std::string& fill,
-           const std::vector<double>& tones, std::vector<std::string> fillColors, double shade,
-           int threads, const py::object& progress) {
+           const std::optional<double>& suggestive, const std::array<double, 3>& light,
+           const std::string& fill, const std::vector<double>& tones,
+           std::vector<std::string> fillColors, double shade, int threads,
+           const py::object& progress) {
             OutlineOptions options;
             options.isophotes = isophotes;
+            options.suggestive = suggestive;
             options.light = openvdb::Vec3d(light.data());
             options.fill =
                 static_cast<OutlineFillKind>(choiceOf(fill, {"none", "flat", "toon"}, "fill"));
@@ -330,7 +332,7 @@ void bindOutline(py::module_& module) {
         py::arg("from_") = py::none(), py::arg("camera") = "perspective",
         py::arg("focal") = standard.camera.focal, py::arg("aperture") = standard.camera.aperture,
         py::arg("frame") = standard.camera.frame, py::arg("iso") = py::none(),
-        py::arg("isophotes") = standard.isophotes,
+        py::arg("isophotes") = standard.isophotes, py::arg("suggestive") = py::none(),
         py::arg("light") =
             std::array<double, 3>{standard.light[0], standard.light[1], standard.light[2]},
         py::arg("fill") = "none", py::arg("tones") = standard.tones,
@@ -341,7 +343,8 @@ void bindOutline(py::module_& module) {
 source: Patches, a .bpt or .obj file of them, a Grid, or a list of such. iso: the value of grids
 that is the surface, by default as they say, else 0.5, or 0 of a level set. isophotes:
 lines where the cosine of the angle between the normal and the direction to the light is one of
-these; light: along the camera's right, up and back. fill: what is between lines, 'none', 'flat', a
+these; light: along the camera's right, up and back. suggestive: of grids, draw suggestive contours of at
+least this strength, as in 20. fill: what is between lines, 'none', 'flat', a
 colour for each object, or 'toon', tones of it; tones: cosines of that angle at which they change,
 ascending; fill_colors: of the objects, one after the other, '#rrggbb'; shade: the darkest tone, as
 a part of the colour. page: width and height, millimetres; margin: what

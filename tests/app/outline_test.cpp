@@ -266,6 +266,9 @@ TEST(Outline, RefusesOptionsOfVolumesThatHaveNoUse) {
               0);
     EXPECT_EQ(statusOf({kTeapotFile, "-r", "64"}), 2);
     EXPECT_EQ(statusOf({kTeapotFile, "--iso", "0.5"}), 2);
+    EXPECT_EQ(statusOf({kTeapotFile, "--suggestive", "5"}), 2);
+    EXPECT_EQ(statusOf({"ball.vdb", "--suggestive", "-5"}), 2);
+    EXPECT_EQ(statusOf({"ball.vdb", "--suggestive", "5"}), 0);
     EXPECT_EQ(statusOf({"ball.vdb", "--order", "4"}), 2);
     EXPECT_EQ(statusOf({"ball.vdb", "--isophotes", "1"}), 2);
     EXPECT_EQ(statusOf({"ball.vdb", "--light", "0,0,0"}), 2);

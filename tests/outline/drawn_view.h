@@ -45,7 +45,8 @@ struct Findings {
 };
 
 inline std::string describe(const CurvePoint& p, OutlineKind kind) {
-    static const char* const kNames[] = {"contour", "boundary", "crease", "intersection"};
+    static const char* const kNames[] = {"contour",      "boundary", "crease",
+                                         "intersection", "isophote", "suggestive"};
     std::string text = kNames[static_cast<int>(kind)];
     text += " at (";
     text += std::to_string(p.x);

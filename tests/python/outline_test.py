@@ -149,6 +149,17 @@ def test_grids_are_drawn_by_their_contours():
         bandvox.outline([ball, 3])
 
 
+def test_a_torus_has_suggestive_contours():
+    torus = bandvox.bandlimit("shape:torus", resolution=48)
+    view = {"from_": (0.2, -1, 0.55), "up": (0, 0, 1), "camera": "orthographic"}
+    kinds = [path.kind for path in bandvox.outline(torus, suggestive=1, **view).paths]
+    assert "suggestive" in kinds
+    kinds = [path.kind for path in bandvox.outline(torus, **view).paths]
+    assert "suggestive" not in kinds
+    with pytest.raises(bandvox.UsageError, match="strength"):
+        bandvox.outline(torus, suggestive=-1)
+
+
 def area(points):
     """Within a closed path."""
     t = np.linspace(0, 1, 50, endpoint=False)[:, np.newaxis]

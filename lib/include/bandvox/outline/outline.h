@@ -12,7 +12,8 @@ enum class OutlineKind {
     Boundary,      ///< where a surface ends
     Crease,        ///< where two patches meet at an angle
     Intersection,  ///< where surfaces pass through each other
-    Isophote       ///< of one angle between a surface and the light
+    Isophote,      ///< of one angle between a surface and the light
+    Suggestive     ///< where a surface would turn away from an eye a little aside
 };
 
 /// A line of a drawing: cubic Bézier curves, one after the other.

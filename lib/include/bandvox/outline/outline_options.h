@@ -2,6 +2,7 @@
 
 #include <bandvox/render/camera.h>
 
+#include <optional>
 #include <vector>
 
 namespace bandvox {
@@ -25,6 +26,10 @@ struct OutlineOptions {
     /// Lines where the cosine of the angle between the normal and the direction to the light is one
     /// of these, between -1 and 1.
     std::vector<double> isophotes;
+    /// Of volumes: suggestive contours, zeros of the curvature along the line of sight where that
+    /// grows towards the eye by at least so much: its derivative by the way, times the square of
+    /// half of the volume's diagonal. None: not drawn; else 0 or more.
+    std::optional<double> suggestive;
     OutlineFillKind fill = OutlineFillKind::None;
     /// Of a toon fill: cosines of that angle at which tones change, ascending, between -1 and 1.
     std::vector<double> tones{0.25, 0.7};

@@ -19,6 +19,7 @@ enum class CurveRule {
     VolumeFold,      ///< ∇f~·v = 0 on a volume's surface
     VolumeMeeting,   ///< in the surfaces of two volumes
     VolumeIsophote,  ///< of one angle to the light on a volume's surface
+    Suggestive,      ///< without curvature along the line of sight on a volume's surface
 };
 
 /// Whether a rule is one of volumes alone.

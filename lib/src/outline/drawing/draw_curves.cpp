@@ -67,6 +67,9 @@ void requireValid(const OutlineOptions& options) {
     for (const double cosine : options.isophotes) {
         if (!(std::abs(cosine) < 1)) refuseOption("isophote", cosine, "between -1 and 1");
     }
+    if (options.suggestive && !(*options.suggestive >= 0)) {
+        refuseOption("suggestive contours' strength", *options.suggestive, "0 or more");
+    }
     if (options.fill == OutlineFillKind::Toon) requireTones(options.tones);
     const double light = options.light.length();
     if (!(light > 0) || !std::isfinite(light)) {

@@ -14,7 +14,8 @@
 namespace bandvox {
 
 std::string PaintLayer::kindName() const {
-    constexpr std::array kNames{"contour", "boundary", "crease", "intersection", "isophote"};
+    constexpr std::array kNames{"contour",      "boundary", "crease",
+                                "intersection", "isophote", "suggestive"};
     return kNames[static_cast<std::size_t>(kind)];
 }
 

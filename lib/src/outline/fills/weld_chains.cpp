@@ -230,6 +230,8 @@ std::vector<Curve> weldedCurves(std::span<const VisiblePiece> pieces, const Curv
                                 const CurveSampling& sampling) {
     std::vector<Curve> seen;
     for (const VisiblePiece& piece : pieces) {
+        // What is on both sides of a suggestive contour is the same.
+        if (piece.curve.kind == OutlineKind::Suggestive) continue;
         if (piece.hidden == 0 && piece.curve.points.size() > 1) seen.push_back(piece.curve);
     }
     return ChainWelder(std::move(seen), scene, sampling).weld();

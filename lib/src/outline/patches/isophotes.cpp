@@ -66,7 +66,7 @@ Normals normalsOf(const BezierPatch& patch) {
 
 Bernstein2 isophoteFunction(const BezierPatch& patch, const Vec& light, double cosine) {
     const Normals n = normalsOf(patch);
-    const Bernstein2 lit = scaled(light[0], n[0]) + scaled(light[1], n[1]) + scaled(light[2], n[2]);
+    Bernstein2 lit = scaled(light[0], n[0]) + scaled(light[1], n[1]) + scaled(light[2], n[2]);
     if (cosine == 0) return lit;
     const Bernstein2 square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
     return lit * lit - scaled(cosine * cosine, square);

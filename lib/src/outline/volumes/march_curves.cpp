@@ -78,7 +78,7 @@ class CurveMarch {
     void march(const Vec3d& place) {
         if (mKnown.contain(place)) return;
         const ChainPoint start = pointOf(mEquations.at(place));
-        if (start.space.tangent().lengthSqr() == 0) return;
+        if (start.space.tangent().lengthSqr() == 0 || !mEquations.holds(start.space)) return;
         Chain chain{start};
         const bool isClosed = follow(chain, 1);
         if (!isClosed) {
@@ -121,11 +121,33 @@ class CurveMarch {
                 return true;
             }
             if (mKnown.contain(next->space.at)) return false;
+            if (!mEquations.holds(next->space)) {
+                if (const auto end = endBetween(last.space, next->space)) {
+                    chain.push_back(pointOf(*end));
+                }
+                return false;
+            }
             const bool isSmooth = last.space.tangent().dot(next->space.tangent()) > 0.994 &&
                                   bowBetween(last.seen, next->seen) < 0.3 * mSampling.flatness;
             chain.push_back(*next);
             if (isSmooth) step = std::min(kLongestVoxelStep, 1.4 * step);
         }
+    }
+
+    // The last place that holds, by halving.
+    std::optional<SpacePoint> endBetween(const SpacePoint& good, const SpacePoint& bad) {
+        constexpr double kNearEnough = 1e-3;
+        double low = 0, high = 1;
+        std::optional<SpacePoint> found;
+        while (high - low > kNearEnough) {
+            const double share = 0.5 * (low + high);
+            const auto middle = spaceBetween(mEquations, good.at, bad.at, share);
+            if (!middle) break;
+            const bool isGood = mEquations.holds(*middle);
+            if (isGood) found = middle;
+            (isGood ? low : high) = share;
+        }
+        return found;
     }
 
     bool passesStart(const Chain& chain, const ChainPoint& next) const {

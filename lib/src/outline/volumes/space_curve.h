@@ -32,6 +32,9 @@ class CurveEquations {
 
     /// A point of the curve as the page sees it.
     virtual CurvePoint seen(const SpacePoint& point) const = 0;
+
+    /// Whether a place of the curve belongs to it: beyond one that does not it ends.
+    virtual bool holds(const SpacePoint& /*point*/) { return true; }
 };
 
 /// The place of a curve that is nearest, about, to one not farther away than `reach` voxels, by

@@ -7,11 +7,14 @@
 #include "outline/volumes/curve_places.h"
 #include "outline/volumes/march_curves.h"
 #include "outline/volumes/pierced_patches.h"
+#include "outline/volumes/suggestive_equations.h"
 #include "render/picture_request.h"
 
 #include <bandvox/core/error.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <utility>
 
@@ -76,6 +79,16 @@ std::vector<Curve> followed(const VolumeSurface& surface, const EquationsMaker& 
     return marchCurves(*equations(), places, sampling, progress);
 }
 
+// Suggestive contours that are shorter than a hundredth of the page only tell of roughness.
+bool isLong(const Curve& curve, const CurveSampling& sampling) {
+    double length = 0;
+    for (std::size_t i = 1; i < curve.points.size(); ++i) {
+        length += std::hypot(curve.points[i].x - curve.points[i - 1].x,
+                             curve.points[i].y - curve.points[i - 1].y);
+    }
+    return length > 0.01 * sampling.size;
+}
+
 // Contours, isophotes, and intersections with the volumes after this one.
 std::vector<Curve> curvesOn(const VolumeSurface& surface, const CurveRequest& request,
                             Progress& progress) {
@@ -95,6 +108,14 @@ std::vector<Curve> curvesOn(const VolumeSurface& surface, const CurveRequest& re
     for (const double cosine : allIsophotes(request.options)) {
         add(OutlineKind::Isophote,
             [&] { return std::make_unique<IsophoteEquations>(surface, request.light, cosine); });
+    }
+    if (request.options.suggestive) {
+        add(OutlineKind::Suggestive, [&] {
+            return std::make_unique<SuggestiveEquations>(surface, *request.options.suggestive);
+        });
+        std::erase_if(curves, [&](const Curve& curve) {
+            return curve.kind == OutlineKind::Suggestive && !isLong(curve, sampling);
+        });
     }
     const bool isFilled = request.options.fill != OutlineFillKind::None;
     if (!request.options.intersections && !isFilled) return curves;

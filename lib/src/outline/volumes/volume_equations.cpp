@@ -12,9 +12,10 @@ openvdb::Mat4d toWorld(const VolumeSurface& surface) {
     return surface.object->grid().transform().baseMap()->getAffineMap()->getMat4();
 }
 
-// A place of a curve that goes along a direction, as the page sees it.
-CurvePoint seenAt(const VolumeSurface& surface, const Vec3d& index, const Vec3d& along,
-                  CurveRule rule) {
+}  // namespace
+
+CurvePoint seenAlong(const VolumeSurface& surface, const Vec3d& index, const Vec3d& along,
+                     CurveRule rule) {
     const Vec3d place = surface.view.place(index);
     CurvePoint result{.x = place[0], .y = place[1], .z = place[2]};
     const auto [x, y] = surface.view.move(index, along);
@@ -30,8 +31,6 @@ CurvePoint seenAt(const VolumeSurface& surface, const Vec3d& index, const Vec3d&
     result.rule = rule;
     return result;
 }
-
-}  // namespace
 
 ContourEquations::ContourEquations(const VolumeSurface& surface)
     : mSurface(surface), mProbe(surface.object->probe()) {}
@@ -55,7 +54,7 @@ double ContourEquations::side(const Vec3d& index) {
 CurvePoint ContourEquations::seen(const SpacePoint& point) const {
     // The tangent plane is seen as a line, which the curve's image follows, even where it stops.
     const Vec3d along = point.df.cross(mSurface.view.sight(point.at));
-    return seenAt(mSurface, point.at, along, CurveRule::VolumeFold);
+    return seenAlong(mSurface, point.at, along, CurveRule::VolumeFold);
 }
 
 MeetingEquations::MeetingEquations(const VolumeSurface& surface, const VolumeSurface& other)
@@ -81,7 +80,7 @@ double MeetingEquations::side(const Vec3d& index) {
 }
 
 CurvePoint MeetingEquations::seen(const SpacePoint& point) const {
-    CurvePoint result = seenAt(mSurface, point.at, point.tangent(), CurveRule::VolumeMeeting);
+    CurvePoint result = seenAlong(mSurface, point.at, point.tangent(), CurveRule::VolumeMeeting);
     result.other = mOther.index;
     return result;
 }
@@ -114,7 +113,7 @@ double IsophoteEquations::side(const Vec3d& index) {
 }
 
 CurvePoint IsophoteEquations::seen(const SpacePoint& point) const {
-    CurvePoint result = seenAt(mSurface, point.at, point.tangent(), CurveRule::VolumeIsophote);
+    CurvePoint result = seenAlong(mSurface, point.at, point.tangent(), CurveRule::VolumeIsophote);
     result.t = mCosine;
     return result;
 }

@@ -17,6 +17,10 @@ struct VolumeSurface {
     double size = 0;                 ///< of that, from corner to corner, voxels
 };
 
+/// A place of a curve that goes along a direction, both in index coordinates, as the page sees it.
+CurvePoint seenAlong(const VolumeSurface& surface, const openvdb::Vec3d& index,
+                     const openvdb::Vec3d& along, CurveRule rule);
+
 /// The contour {f~ = d, ∇f~·v = 0}, v along the line of sight: where that touches the surface. Its
 /// image turns back where v lies along the curve itself, so that v·H v = 0, H being the Hessian;
 /// where that is above 0 the line of sight lies inside of the solid around the place.

@@ -1,6 +1,7 @@
 #include "outline/volumes/volume_scene.h"
 
 #include "outline/volumes/pierced_patches.h"
+#include "outline/volumes/suggestive_equations.h"
 
 #include <cstddef>
 #include <map>
@@ -191,6 +192,8 @@ class VolumeSceneReader final : public CurveReader {
             equations = std::make_unique<MeetingEquations>(surface, other);
         } else if (p.rule == CurveRule::VolumeIsophote) {
             equations = std::make_unique<IsophoteEquations>(surface, mLight, p.t);
+        } else if (p.rule == CurveRule::Suggestive) {
+            equations = std::make_unique<SuggestiveEquations>(surface, 0);
         } else {
             equations = std::make_unique<ContourEquations>(surface);
         }
