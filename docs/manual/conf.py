@@ -18,6 +18,12 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "breathe", "site_docstrings",
 root_doc = "docs/manual/index"
 # The source folder is one of links to what lies in the repository, and of generated pages.
 include_patterns = ["*.md", "docs/**", "benchmarks/*.md", "commands/*", "notebooks/*", "api/*"]
+nitpicky = True
+# Names of other libraries, and of the parts that classes keep to themselves.
+nitpick_ignore_regex = [("cpp:identifier", r"bandvox|openvdb(::.*)?|SplineVolumeParts|EnvironmentMap|WindingTree"),
+                        ("py:.*", r"(os|numpy|typing|distributed)\..*|bandvox\._bandvox\._.*|handle"),
+                        # "Subclassed by": Breathe gives classes other labels than it takes them to have.
+                        ("std:ref", r"(class|struct)bandvox_.*")]
 exclude_patterns = ["docs/manual/theme"]
 
 html_theme = "furo"
