@@ -1,5 +1,6 @@
 #include "write_manual.h"
 
+#include "manual_markdown.h"
 #include "manual_page.h"
 #include "shell_completion.h"
 
@@ -36,7 +37,9 @@ void writeManual(const fs::path& folder, const std::vector<const CommandTable*>&
     writeText(folder / "man" / "bandvox.1", overviewPage(tables));
     for (const CommandTable* table : tables) {
         writeText(folder / "man" / ("bandvox-" + table->name + ".1"), manualPage(*table, tables));
+        writeText(folder / "markdown" / ("bandvox-" + table->name + ".md"), markdownPage(*table));
     }
+    writeText(folder / "markdown" / "bandvox.md", markdownOverview(tables));
     writeText(folder / "bash" / "bandvox", bashCompletion(tables));
     writeText(folder / "zsh" / "_bandvox", zshCompletion(tables));
     writeText(folder / "fish" / "bandvox.fish", fishCompletion(tables));

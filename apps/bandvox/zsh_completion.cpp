@@ -24,9 +24,12 @@ std::string actionFor(const ValueHint& hint, bool anyFile) {
     if (!hint.endings.empty()) {
         std::string pattern;
         for (const std::string& ending : hint.endings) {
-            pattern += (pattern.empty() ? "" : "|") + ending.substr(1);
+            if (!pattern.empty()) pattern += '|';
+            pattern.append(ending, 1);
         }
-        files = "_files -g \"(#i)*.(" + pattern + ")(-.)\"";
+        files = "_files -g \"(#i)*.(";
+        files += pattern;
+        files += ")(-.)\"";
     } else if (anyFile) {
         files = "_files";
     }

@@ -399,25 +399,6 @@ TEST_F(Fit, WritesNoMoreThanAMillionPatchesUnasked) {
     EXPECT_EQ(fit({"many.npy", "-o", "many.bpt", "--levels", "1..5"}).status, 0);
 }
 
-TEST_F(Fit, RunsWhatItsPageShows) {
-    const std::string page = readText(std::filesystem::path(BANDVOX_SOURCE_DIR) / "docs/fit.md");
-    const std::string fence = "```sh runnable\n";
-    const std::size_t begin = page.find(fence);
-    ASSERT_NE(begin, std::string::npos);
-    const std::size_t start = begin + fence.size();
-    const std::string block = page.substr(start, page.find("\n```", start) + 1 - start);
-    const std::string path =
-        "PATH=" + std::filesystem::path(BANDVOX_EXECUTABLE).parent_path().string() + ":$PATH\n";
-    const TemporaryFolder folder;
-    const RunResult result =
-        runProgram({"/bin/sh", "-e", "-c", path + block}, {.folder = folder.path()});
-    EXPECT_EQ(result.status, 0) << result.err;
-    for (const char* name : {"surface.bpt", "surface.npy", "surface.ply", "surface.exr",
-                             "solid.vdb", "simple.bpt", "field.vdb"}) {
-        EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
-    }
-}
-
 TEST_F(Fit, IsTheSameForAnyNumberOfThreads) {
     ASSERT_EQ(fit({"heights.csv", "-o", "one.npy", "--threads", "1"}).status, 0);
     ASSERT_EQ(fit({"heights.csv", "-o", "three.npy", "--threads", "3"}).status, 0);

@@ -122,6 +122,40 @@ TEST_F(Manual, IsReadWithoutWarnings) {
     }
 }
 
+/// What Markdown shows of a text whose punctuation is escaped.
+std::string unescaped(const std::string& text) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '\\' && i + 1 < text.size()) ++i;
+        out += text[i];
+    }
+    return out;
+}
+
+TEST_F(Manual, HasPagesOfTheSiteThatSayWhatTheHelpSays) {
+    const std::string overview = unescaped(readText(file("markdown/bandvox.md")));
+    for (const std::string& command : kCommands) {
+        SCOPED_TRACE(command);
+        EXPECT_NE(overview.find("[" + command + "](bandvox-" + command + ".md)"),
+                  std::string::npos);
+        const std::string page = unescaped(readText(file("markdown/bandvox-" + command + ".md")));
+        const std::string help = runBandvox({"help", command}).out;
+        int found = 0;
+        for (const std::string& option : optionsIn(help)) {
+            for (const std::string& line : linesOf(page)) {
+                if (line.starts_with("````{option} ") && line.ends_with(option)) ++found;
+            }
+        }
+        EXPECT_EQ(found, static_cast<int>(optionsIn(help).size()));
+        // All its words, in whatever lines.
+        std::istringstream words(
+            help.substr(help.find('\n'), help.find("\nArguments") - help.find('\n')));
+        std::string detail;
+        for (std::string word; words >> word;) detail += (detail.empty() ? "" : " ") + word;
+        EXPECT_NE(page.find(detail), std::string::npos) << detail;
+    }
+}
+
 TEST_F(Manual, FailsWhereItCannotWrite) {
     writeText(folder() / "file", "");
     const RunResult result = runBandvox({"--write-manual", (folder() / "file").string()});

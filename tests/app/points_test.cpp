@@ -179,24 +179,6 @@ TEST_F(Points, AreConvertedFrameByFrame) {
     EXPECT_NEAR(densityIntegral(*read("p.0002.vdb")), 8 * kUnitBall, 0.01 * kUnitBall);
 }
 
-TEST_F(Points, LinesOfThePageWork) {
-    const std::filesystem::path source = BANDVOX_SOURCE_DIR;
-    const std::string page = readText(source / "docs/points.md");
-    const std::string fence = "\n```sh runnable\n";
-    const std::size_t begin = page.find(fence) + fence.size();
-    ASSERT_GE(begin, fence.size());
-    const std::string block = page.substr(begin, page.find("\n```", begin) + 1 - begin);
-    const TemporaryFolder folder;
-    const std::string path =
-        "PATH=" + std::filesystem::path(BANDVOX_EXECUTABLE).parent_path().string() + ":$PATH\n";
-    const RunResult result =
-        runProgram({"/bin/sh", "-e", "-c", path + block}, {.folder = folder.path()});
-    EXPECT_EQ(result.status, 0) << result.err;
-    for (const char* name : {"water.vdb", "drops.vdb", "water.ply", "distances.vdb"}) {
-        EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
-    }
-}
-
 TEST_F(Points, RefuseWhatMakesNoSense) {
     const auto expect = [&](int status, const Names& arguments, const std::string& word) {
         const RunResult result = convert(arguments);

@@ -123,6 +123,29 @@ def test_a_notebook_in_the_fresh_environment(environment, tmp_path):
         density.metadata["bandvox_source_volume"], rel=1e-3)
 
 
+def test_the_notebook_of_the_examples_in_the_fresh_environment(environment, tmp_path):
+    nbformat = pytest.importorskip("nbformat", reason="needs python3-nbclient")
+    pytest.importorskip("nbclient", reason="needs python3-nbclient")
+    pytest.importorskip("ipykernel", reason="needs python3-ipykernel")
+    source = ROOT / "examples" / "notebooks" / "mesh_to_picture.ipynb"
+    program = f"""
+import nbformat, nbclient
+notebook = nbformat.read({str(source)!r}, as_version=4)
+nbclient.NotebookClient(notebook, timeout=120, resources={{"metadata": {{"path": "."}}}}).execute()
+nbformat.write(notebook, "run.ipynb")
+"""
+    # Debian's kernel is one of the system's Python, which does not know the package.
+    run(environment, "-m", "ipykernel", "install", "--sys-prefix", folder=tmp_path)
+    run(environment, "-c", program, folder=tmp_path)
+    cells = [cell for cell in nbformat.read(tmp_path / "run.ipynb", as_version=4).cells
+             if cell.cell_type == "code"]
+    assert len([line for line in cells[0].source.splitlines() if line]) < 15
+    assert any("image/png" in output.get("data", {}) for output in cells[0].outputs)
+    (density,) = bandvox.read_vdb(tmp_path / "head.vdb")
+    assert density.metadata["bandvox_grid_volume"] == pytest.approx(
+        density.metadata["bandvox_source_volume"], rel=1e-3)
+
+
 def test_the_source_archive_holds_what_is_built_from(tmp_path):
     program = f"import bandvox_build; bandvox_build.build_sdist({str(tmp_path)!r})"
     run(sys.executable, "-B", "-c", program, folder=BACKEND)
