@@ -245,7 +245,8 @@ TEST(PointLists, AreInOrderForAnyNumberOfThreads) {
     }
     for (const int threads : {1, 2, 3}) {
         const ThreadLimit limit(threads);
-        const PointLists lists = listByPoint(mesh, [](const Vec3I& t, int k) { return t[k]; });
+        const PointLists lists =
+            listByPoint<3>(mesh.triangles, kPoints, [](const Vec3I& t, int k) { return t[k]; });
         for (unsigned p = 0; p < kPoints; ++p) {
             const auto list = lists.of(p);
             ASSERT_TRUE(

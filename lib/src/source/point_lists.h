@@ -11,7 +11,7 @@
 
 namespace bandvox {
 
-/// Corners, or edges, of a mesh by the point that they belong to: those of point p are
+/// Corners, edges or triangles of a mesh by the point that they belong to: those of point p are
 /// items[start[p]] to items[start[p + 1] - 1], in rising order.
 struct PointLists {
     std::vector<std::uint32_t> start;
@@ -22,13 +22,14 @@ struct PointLists {
     }
 };
 
-/// Lists 3·t + k, for each triangle t and k = 0, 1, 2, by pointOf(triangle, k).
-template <typename PointOf>
-PointLists listByPoint(const Mesh& mesh, const PointOf& pointOf) {
+/// Lists kItems·t + k, for each triangle t and k from 0 to kItems - 1, by pointOf(triangle, k),
+/// which is below pointCount.
+template <int kItems, typename PointOf>
+PointLists listByPoint(const std::vector<openvdb::Vec3I>& triangles, std::size_t pointCount,
+                       const PointOf& pointOf) {
     // Each block has points of its own, and looks at all triangles for theirs: so blocks share
     // nothing that they write to, and their number changes no list.
     constexpr std::size_t kMostBlocks = 8, kLeastPoints = 16384;
-    const std::size_t pointCount = mesh.points.size();
     const std::size_t blocks = std::clamp<std::size_t>(
         pointCount / kLeastPoints, 1,
         std::min<std::size_t>(kMostBlocks, static_cast<std::size_t>(threadCount())));
@@ -37,8 +38,8 @@ PointLists listByPoint(const Mesh& mesh, const PointOf& pointOf) {
         const auto begin = static_cast<std::uint32_t>(firstOf(block));
         const auto count = static_cast<std::uint32_t>(firstOf(block + 1)) - begin;
         std::uint32_t item = 0;
-        for (const openvdb::Vec3I& t : mesh.triangles) {
-            for (int k = 0; k < 3; ++k, ++item) {
+        for (const openvdb::Vec3I& t : triangles) {
+            for (int k = 0; k < kItems; ++k, ++item) {
                 const std::uint32_t point = pointOf(t, k);
                 if (point - begin < count) visit(point, item);
             }
@@ -48,7 +49,7 @@ PointLists listByPoint(const Mesh& mesh, const PointOf& pointOf) {
     // Count, then place.
     PointLists lists;
     lists.start.assign(pointCount + 1, 0);
-    lists.items.resize(3 * mesh.triangles.size());
+    lists.items.resize(kItems * triangles.size());
     std::vector<std::uint32_t> total(blocks + 1, 0);
     parallelFor(static_cast<std::int64_t>(blocks), [&](std::int64_t i) {
         const auto block = static_cast<std::size_t>(i);

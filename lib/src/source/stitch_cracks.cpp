@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -26,11 +27,15 @@ constexpr int kMostRounds = 4;
 /// Directed edges, by their numbers, that only one triangle has.
 std::vector<std::uint32_t> boundaryEdges(const Mesh& mesh) {
     const DirectedEdges edges(mesh);
-    const std::vector<std::uint32_t> order = groupEdges(edges, mesh.points.size());
+    std::vector<std::vector<std::uint32_t>> parts(indexBlocks(mesh.points.size()));
+    forEachGroupInBlocks(edges, listEdges(edges, mesh.points.size()),
+                         [&](std::size_t block, std::span<const std::uint32_t> group) {
+                             if (group.size() == 1) parts[block].push_back(group.front());
+                         });
     std::vector<std::uint32_t> boundary;
-    forEachGroup(edges, order, [&](std::size_t begin, std::size_t end) {
-        if (end - begin == 1) boundary.push_back(order[begin]);
-    });
+    for (const std::vector<std::uint32_t>& part : parts) {
+        boundary.insert(boundary.end(), part.begin(), part.end());
+    }
     std::sort(boundary.begin(), boundary.end());
     return boundary;
 }

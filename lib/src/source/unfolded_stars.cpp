@@ -95,7 +95,8 @@ std::vector<std::uint8_t> certainFacings(const Mesh& mesh) {
 std::vector<std::uint8_t> findUnfoldedStars(const Mesh& mesh,
                                             const std::vector<std::uint8_t>& facings) {
     const PointLists corners =
-        listByPoint(mesh, [](const Vec3I& triangle, int k) { return triangle[k]; });
+        listByPoint<3>(mesh.triangles, mesh.points.size(),
+                       [](const Vec3I& triangle, int k) { return triangle[k]; });
     std::vector<std::uint8_t> unfolded(mesh.points.size());
     forEachIndexBlock(unfolded.size(), [&](std::size_t begin, std::size_t end) {
         std::vector<Sector> sectors;
