@@ -23,22 +23,23 @@ constexpr std::size_t kChildren = 4;
 BANDVOX_FOR_EACH_INSTRUCTION_SET
 void BoxPairs::findMeeting(const Leaf& a, const Leaf& b, const Box& boxOfB,
                            std::array<std::uint32_t, kLeaf>& meets) {
-    for (int i = 0; i < kLeaf; ++i) {
-        meets[i] = 0;
-        const bool isNear = (a.low[0][i] <= boxOfB.high[0]) & (a.high[0][i] >= boxOfB.low[0]) &
-                            (a.low[1][i] <= boxOfB.high[1]) & (a.high[1][i] >= boxOfB.low[1]) &
-                            (a.low[2][i] <= boxOfB.high[2]) & (a.high[2][i] >= boxOfB.low[2]);
-        if (!isNear) continue;
-        const float low[] = {a.low[0][i], a.low[1][i], a.low[2][i]};
-        const float high[] = {a.high[0][i], a.high[1][i], a.high[2][i]};
+    const auto findBits = [](const Leaf& leaf, const float* low, const float* high) {
         std::uint32_t bits = 0;
         for (int k = 0; k < kLeaf; ++k) {
-            const bool meet = (b.low[0][k] <= high[0]) & (b.high[0][k] >= low[0]) &
-                              (b.low[1][k] <= high[1]) & (b.high[1][k] >= low[1]) &
-                              (b.low[2][k] <= high[2]) & (b.high[2][k] >= low[2]);
+            const bool meet = (leaf.low[0][k] <= high[0]) & (leaf.high[0][k] >= low[0]) &
+                              (leaf.low[1][k] <= high[1]) & (leaf.high[1][k] >= low[1]) &
+                              (leaf.low[2][k] <= high[2]) & (leaf.high[2][k] >= low[2]);
             bits |= meet ? 1U << k : 0U;
         }
-        meets[i] = bits;
+        return bits;
+    };
+    meets.fill(0);
+    std::uint32_t near = findBits(a, boxOfB.low.data(), boxOfB.high.data());
+    for (; near != 0; near &= near - 1) {
+        const int i = std::countr_zero(near);
+        const float low[] = {a.low[0][i], a.low[1][i], a.low[2][i]};
+        const float high[] = {a.high[0][i], a.high[1][i], a.high[2][i]};
+        meets[i] = findBits(b, low, high);
     }
 }
 

@@ -235,18 +235,18 @@ ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progr
     if (mesh.triangles.empty()) {
         throw Error(ErrorKind::Input, "the mesh has no triangle with an area; expected a solid");
     }
-    const StitchedCracks cracks =
-        stitchCracks(mesh,
-                     std::max(options.crackTolerance * longestSide(mesh),
-                              options.weldTolerance * largestCoordinate(mesh)),
-                     progress);
+    StitchedCracks cracks = stitchCracks(mesh,
+                                         std::max(options.crackTolerance * longestSide(mesh),
+                                                  options.weldTolerance * largestCoordinate(mesh)),
+                                         progress);
     report.crackPoints = cracks.pointsJoined;
     report.edgesSplit = cracks.edgesSplit;
     report.degenerateTriangles += countWithoutArea(mesh);
     advance();
 
     // Make the pieces consistent and closed.
-    MeshComponents components = orientComponents(mesh);
+    MeshComponents components = orientComponents(mesh, cracks.edges);
+    cracks.edges = {};
     report.components = components.count;
     report.oneSided = components.oneSided.size();
     report.problem = problemOfSides(mesh, components);

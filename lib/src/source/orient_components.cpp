@@ -85,9 +85,8 @@ void appendBoundary(const DirectedEdges& edges, std::span<const std::uint32_t> g
 
 }  // namespace
 
-MeshComponents orientComponents(Mesh& mesh) {
+MeshComponents orientComponents(Mesh& mesh, const PointLists& lists) {
     const DirectedEdges edges(mesh);
-    const PointLists lists = listEdges(edges, mesh.points.size());
     MeshComponents components;
     std::vector<char> flipped(mesh.triangles.size(), 0);
     {
