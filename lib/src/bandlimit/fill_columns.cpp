@@ -24,14 +24,17 @@ ColumnStatistics FilledColumns::total() const {
 FilledColumns fillColumns(const BoundarySource& source, const TilePlan& plan,
                           const TileLayout& layout, const TileFilter& filter, const char* stage,
                           Progress& progress, const std::vector<bool>& wanted) {
+    const std::int64_t count = static_cast<std::int64_t>(layout.count.y()) * layout.count.z();
+    const bool areMany = SpreadBricks::payFor(source, layout.voxelSize);
+    const ProgressStage inProgress(progress, stage,
+                                   count + (areMany ? SpreadBricks::steps(plan, layout) : 0));
     std::optional<SpreadBricks> bricks;
     std::optional<ElementBins> bins;
-    if (SpreadBricks::payFor(source, layout.voxelSize)) {
+    if (areMany) {
         bricks.emplace(source, plan, layout, filter, wanted, progress);
     } else {
         bins.emplace(source, layout, plan.halo);
     }
-    const std::int64_t count = static_cast<std::int64_t>(layout.count.y()) * layout.count.z();
     FilledColumns columns;
     columns.blocks.resize(count);
     columns.statistics.resize(count);
@@ -40,7 +43,6 @@ FilledColumns fillColumns(const BoundarySource& source, const TilePlan& plan,
         return std::make_unique<DensityColumn>(source, plan, layout, filter,
                                                bricks ? &*bricks : nullptr);
     });
-    const ProgressStage inProgress(progress, stage, count);
     parallelFor(count, [&](std::int64_t i) {
         progress.throwIfInterrupted();
         const int y = static_cast<int>(i / layout.count.z());

@@ -195,6 +195,13 @@ double SpreadBricks::estimateMemory(const BoundarySource& source, const TilePlan
     return (1 + area * kBricksOfSquare / (kUsualSide * kUsualSide)) * kUsed * nodes * sizeof(float);
 }
 
+std::int64_t SpreadBricks::steps(const TilePlan& plan, const TileLayout& layout) {
+    const auto bricksAlong = [&](int axis) {
+        return Axis(layout.count[axis], layout.interior, plan.side).count();
+    };
+    return static_cast<std::int64_t>(bricksAlong(1)) * bricksAlong(2);
+}
+
 SpreadBricks::SpreadBricks(const BoundarySource& source, const TilePlan& plan,
                            const TileLayout& layout, const TileFilter& filter,
                            const std::vector<bool>& wanted, Progress& progress)
@@ -210,7 +217,6 @@ SpreadBricks::SpreadBricks(const BoundarySource& source, const TilePlan& plan,
     mColumns.resize(bins.start.size() - 1);
     std::vector<double> seconds(mColumns.size(), 0);
     WorkerPool<Filler> pool([&] { return std::make_unique<Filler>(*this); });
-    const ProgressStage stage(progress, "spreading", static_cast<std::int64_t>(mColumns.size()));
     parallelFor(static_cast<std::int64_t>(mColumns.size()), [&](std::int64_t i) {
         progress.throwIfInterrupted();
         const auto elements = bins.bin(static_cast<std::size_t>(i));

@@ -32,6 +32,9 @@ class SpreadBricks {
     static double estimateMemory(const BoundarySource& source, const TilePlan& plan,
                                  double voxelSize);
 
+    /// The steps by which making them advances progress.
+    static std::int64_t steps(const TilePlan& plan, const TileLayout& layout);
+
     /// Spreads what matters to columns of tiles that are `wanted`, as fillColumns has them.
     /// Throws Error(ErrorKind::Interrupted).
     SpreadBricks(const BoundarySource& source, const TilePlan& plan, const TileLayout& layout,
