@@ -18,10 +18,10 @@ namespace bandvox {
 /// A surface of very many small elements, spread once for all tiles.
 ///
 /// What matters to a tile reaches into its neighbours by the halo, so that on average each sample
-/// is wanted by two or three tiles. Space is cut where the region of any tile begins or ends, and
+/// is wanted by about two tiles. Space is cut where the region of any tile begins or ends, and
 /// in between, into bricks, so that a region is made of whole ones; a brick's samples are spread to
-/// a piece of lattice of its own, which tiles add to theirs. Only numbers of nodes that the samples
-/// reach are kept, so that memory follows the surface's area, not the number of elements.
+/// a piece of lattice of its own, which tiles add to theirs. Only nodes that some sample
+/// reaches are kept, so that memory follows the surface's area, not the number of elements.
 class SpreadBricks {
   public:
     /// True if the elements are so many for the surface's area that this takes less time than

@@ -45,6 +45,7 @@ class CurvePlaces {
     }
 
     std::uint64_t operator()(std::size_t triangle) const {
+        if (mScale == 0) return 0;
         const openvdb::Vec3I& t = mMesh.triangles[triangle];
         std::uint64_t place = 0;
         for (int axis = 0; axis < 3; ++axis) {
