@@ -22,11 +22,13 @@ void ColumnStatistics::add(const ColumnStatistics& other) {
 }
 
 DensityColumn::DensityColumn(const BoundarySource& source, const TilePlan& plan,
-                             const TileLayout& layout, const TileFilter& filter)
+                             const TileLayout& layout, const TileFilter& filter,
+                             const SpreadBricks* bricks)
     : mSource(source),
       mPlan(plan),
       mLayout(layout),
       mFilter(filter),
+      mBricks(bricks),
       mBuffer(filter.allocate()),
       mBufferSize(filter.bufferSize()),
       mNear(plan.halo, plan.interior),
@@ -45,7 +47,7 @@ ColumnBlocks DensityColumn::fill(int y, int z, std::span<const std::uint32_t> el
         progress.throwIfInterrupted();
         const openvdb::Coord tile(x, y, z);
         const openvdb::Coord origin = mLayout.tileOrigin(tile);
-        if (lists[x].empty() || !sampleTile(tile, lists[x], statistics)) {
+        if (!fillTile(tile, lists[x], statistics)) {
             snapAll(statistics);
             farValues[x] = static_cast<float>(mSum[0]);
         } else {
@@ -75,38 +77,54 @@ DensityColumn::ElementLists DensityColumn::sortByTile(
     return lists;
 }
 
-// Computes the tile's densities into mDensity. Returns false if no part of the surface is there.
-bool DensityColumn::sampleTile(const openvdb::Coord& tile,
-                               const std::vector<std::uint32_t>& elements,
-                               ColumnStatistics& statistics) {
-    // Collect the quadrature points that matter to the tile.
-    const Stopwatch stopwatch;
+// Spreads what matters to a tile onto the buffer, if it makes differences, and marks where it is.
+SpreadBricks::Content DensityColumn::spreadTile(const openvdb::Coord& tile,
+                                                const std::vector<std::uint32_t>& elements) {
     const openvdb::Vec3d offset = mFilter.regionOffset();
-    const SamplingRegion region{mLayout.voxelSize, mLayout.tileOrigin(tile).asVec3d() + offset,
-                                openvdb::Vec3d(mPlan.side)};
-    mSamples.clear();
-    for (const std::uint32_t element : elements) {
-        mSource.sampleElement(element, region, mPlan.quadrature, mSamples);
+    SpreadBricks::Content content;
+    if (mBricks != nullptr) {
+        content = mBricks->contentOf(tile);
+        if (content.samples == 0) return content;
+        mBricks->mark(tile, openvdb::Coord::round(-offset), mNear);
+    } else {
+        // Collect the quadrature points.
+        const SamplingRegion region{mLayout.voxelSize, mLayout.tileOrigin(tile).asVec3d() + offset,
+                                    openvdb::Vec3d(mPlan.side)};
+        mSamples.clear();
+        for (const std::uint32_t element : elements) {
+            mSource.sampleElement(element, region, mPlan.quadrature, mSamples);
+        }
+        if (mSamples.empty()) return content;
+        mNear.mark(mSamples, -offset);
+        content.samples = static_cast<std::int64_t>(mSamples.size());
+        // A surface parallel to x makes no differences.
+        content.hasDifferences =
+            std::any_of(mSamples.begin(), mSamples.end(),
+                        [](const SurfaceSample& sample) { return sample.areaVector.x() != 0; });
     }
-    if (mSamples.empty()) return false;
-    mNear.mark(mSamples, -offset);
-
-    // Filter them. A surface parallel to x makes no differences.
-    const bool hasDifferences =
-        std::any_of(mSamples.begin(), mSamples.end(),
-                    [](const SurfaceSample& sample) { return sample.areaVector.x() != 0; });
-    double spreadSeconds = stopwatch.seconds();
-    if (hasDifferences) {
-        std::fill_n(mBuffer.get(), mBufferSize, 0.0F);
+    if (!content.hasDifferences) return content;
+    std::fill_n(mBuffer.get(), mBufferSize, 0.0F);
+    if (mBricks != nullptr) {
+        mBricks->addTo(tile, mBuffer.get());
+    } else {
         mFilter.spread(mSamples, mBuffer.get());
-        spreadSeconds = stopwatch.seconds();
-        mFilter.apply(mBuffer.get());
     }
+    return content;
+}
+
+// Computes the tile's densities into mDensity. Returns false if no part of the surface is there.
+bool DensityColumn::fillTile(const openvdb::Coord& tile, const std::vector<std::uint32_t>& elements,
+                             ColumnStatistics& statistics) {
+    const Stopwatch stopwatch;
+    const SpreadBricks::Content content = spreadTile(tile, elements);
+    if (content.samples == 0) return false;
+    const double spreadSeconds = stopwatch.seconds();
+    if (content.hasDifferences) mFilter.apply(mBuffer.get());
     statistics.spreadSeconds += spreadSeconds;
     statistics.transformSeconds += stopwatch.seconds() - spreadSeconds;
-    statistics.samples += static_cast<std::int64_t>(mSamples.size());
+    statistics.samples += content.samples;
     ++statistics.tiles;
-    sumTile(hasDifferences, statistics);
+    sumTile(content.hasDifferences, statistics);
     return true;
 }
 

@@ -3,6 +3,7 @@
 #include "bandlimit/block_store.h"
 #include "bandlimit/element_bins.h"
 #include "bandlimit/near_cells.h"
+#include "bandlimit/spread_bricks.h"
 #include "bandlimit/tile_filter.h"
 
 #include <bandvox/core/progress.h>
@@ -37,10 +38,11 @@ struct ColumnStatistics {
 /// differences that TileFilter makes. Made once per thread, used for many columns.
 class DensityColumn {
   public:
+    /// `bricks` may hold what the source gives to tiles; else null.
     DensityColumn(const BoundarySource& source, const TilePlan& plan, const TileLayout& layout,
-                  const TileFilter& filter);
+                  const TileFilter& filter, const SpreadBricks* bricks);
 
-    /// Does the column at (y, z), with the elements that may matter to it.
+    /// Does the column at (y, z), with the elements that may matter to it; without bricks.
     ColumnBlocks fill(int y, int z, std::span<const std::uint32_t> elements,
                       ColumnStatistics& statistics, const Progress& progress);
 
@@ -48,8 +50,10 @@ class DensityColumn {
     using ElementLists = std::vector<std::vector<std::uint32_t>>;
 
     ElementLists sortByTile(std::span<const std::uint32_t> elements) const;
-    bool sampleTile(const openvdb::Coord& tile, const std::vector<std::uint32_t>& elements,
-                    ColumnStatistics& statistics);
+    bool fillTile(const openvdb::Coord& tile, const std::vector<std::uint32_t>& elements,
+                  ColumnStatistics& statistics);
+    SpreadBricks::Content spreadTile(const openvdb::Coord& tile,
+                                     const std::vector<std::uint32_t>& elements);
     void sumTile(bool hasDifferences, ColumnStatistics& statistics);
     void snapCell(int y, int z, ColumnStatistics& statistics);
     void snapAll(ColumnStatistics& statistics);
@@ -59,6 +63,7 @@ class DensityColumn {
     const TilePlan& mPlan;
     const TileLayout& mLayout;
     const TileFilter& mFilter;
+    const SpreadBricks* mBricks;
     FftBuffer mBuffer;
     std::size_t mBufferSize;
     NearCells mNear;

@@ -20,8 +20,7 @@ ElementBins::ElementBins(const BoundarySource& source, const TileLayout& layout,
 ElementBins::ElementBins(std::size_t elementCount,
                          const std::function<openvdb::BBoxd(std::size_t)>& boundsOf,
                          const TileLayout& layout, int halo)
-    : mZCount(layout.count.z()),
-      mStart(static_cast<std::size_t>(layout.count.y()) * layout.count.z() + 1, 0) {
+    : mZCount(layout.count.z()) {
     const auto forEachColumn = [&](std::size_t element, const auto& visit) {
         const openvdb::BBoxd bounds = boundsOf(element);
         const openvdb::Vec3d low = bounds.min() / layout.voxelSize;
@@ -34,27 +33,12 @@ ElementBins::ElementBins(std::size_t elementCount,
             }
         }
     };
-    // Count, then place: a sort by column that keeps the elements' order.
-    for (std::size_t e = 0; e < elementCount; ++e) {
-        forEachColumn(e, [&](std::size_t column) { ++mStart[column + 1]; });
-    }
-    for (std::size_t c = 1; c < mStart.size(); ++c) mStart[c] += mStart[c - 1];
-    mElements.resize(mStart.back());
-    std::vector<std::uint64_t> next(mStart.begin(), mStart.end() - 1);
-    for (std::size_t e = 0; e < elementCount; ++e) {
-        forEachColumn(e, [&](std::size_t column) {
-            mElements[next[column]++] = static_cast<std::uint32_t>(e);
-        });
-    }
+    mBins = sortIntoBins(
+        elementCount, static_cast<std::size_t>(layout.count.y()) * layout.count.z(), forEachColumn);
 }
 
 std::span<const std::uint32_t> ElementBins::column(int y, int z) const {
-    const std::size_t index = static_cast<std::size_t>(y) * mZCount + z;
-    return {mElements.data() + mStart[index], mElements.data() + mStart[index + 1]};
-}
-
-std::size_t ElementBins::memory() const {
-    return mStart.size() * sizeof(mStart[0]) + mElements.size() * sizeof(mElements[0]);
+    return mBins.bin(static_cast<std::size_t>(y) * mZCount + z);
 }
 
 }  // namespace bandvox

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bandlimit/parallel_bins.h"
 #include "bandlimit/tile_plan.h"
 
 #include <bandvox/source/boundary_source.h>
@@ -25,12 +26,11 @@ class ElementBins {
     std::span<const std::uint32_t> column(int y, int z) const;
 
     /// What the bins hold, bytes.
-    std::size_t memory() const;
+    std::size_t memory() const { return mBins.memory(); }
 
   private:
     int mZCount;
-    std::vector<std::uint64_t> mStart;  // of each column in mElements, and the end
-    std::vector<std::uint32_t> mElements;
+    Bins mBins;  // one for each column
 };
 
 /// The tiles along `axis` whose interior, widened by the halo and a voxel, touches an interval.

@@ -16,6 +16,7 @@ namespace bandvox {
 struct FilledColumns {
     std::vector<ColumnBlocks> blocks;
     std::vector<ColumnStatistics> statistics;
+    double brickSeconds = 0;  ///< spent on what several columns share
 
     /// That of all columns together.
     ColumnStatistics total() const;

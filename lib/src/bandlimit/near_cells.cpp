@@ -21,7 +21,7 @@ NearCells::NearCells(int halo, int interior)
       mDilated(mMarked.size()) {}
 
 void NearCells::mark(std::span<const SurfaceSample> samples, const openvdb::Vec3d& interiorAt) {
-    std::fill(mMarked.begin(), mMarked.end(), std::uint8_t{0});
+    clear();
     const openvdb::Vec3f shift(openvdb::Vec3d(mReach * kCell) - interiorAt);
     for (const SurfaceSample& sample : samples) {
         std::size_t index = 0;
@@ -32,6 +32,23 @@ void NearCells::mark(std::span<const SurfaceSample> samples, const openvdb::Vec3
         }
         mMarked[index] = 1;
     }
+    widen();
+}
+
+void NearCells::clear() {
+    std::fill(mMarked.begin(), mMarked.end(), std::uint8_t{0});
+}
+
+void NearCells::add(const openvdb::Coord& voxel) {
+    std::size_t index = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int cell = (voxel[axis] + mReach * kCell) / kCell;  // not below 0
+        index = index * mSide + std::clamp(cell, 0, mSide - 1);
+    }
+    mMarked[index] = 1;
+}
+
+void NearCells::widen() {
     dilate(1);
     dilate(mSide);
     dilate(static_cast<std::size_t>(mSide) * mSide);

@@ -23,6 +23,12 @@ class NearCells {
     /// voxel is at `interiorAt`).
     void mark(std::span<const SurfaceSample> samples, const openvdb::Vec3d& interiorAt);
 
+    /// The same in steps: forgets all, adds the voxels that hold samples (counted from the
+    /// interior's first), and in the end marks what is within the halo of them.
+    void clear();
+    void add(const openvdb::Coord& voxel);
+    void widen();
+
     /// Cells along each axis of the interior.
     int count() const { return mCount; }
 

@@ -1,6 +1,7 @@
 #include "bandlimit/density_steps.h"
 #include "bandlimit/fill_columns.h"
 #include "bandlimit/find_overlap.h"
+#include "bandlimit/spread_bricks.h"
 #include "bandlimit/surface_quadrature.h"
 #include "bandlimit/tile_filter.h"
 #include "bandlimit/tile_plan.h"
@@ -41,16 +42,22 @@ double estimateGridMemory(const BoundarySource& source, double voxelSize, const 
 // Bytes that the work on it takes besides.
 double estimateWorkMemory(const BoundarySource& source, const TilePlan& plan,
                           const TileLayout& layout, const TileFilter& filter) {
-    // A tile of an ordinary shape holds about three times its own cross-section of the surface,
-    // and of the elements that much, each with a sample at least.
     const auto elements = static_cast<double>(source.elementCount());
     const double crossSection = static_cast<double>(plan.side) * plan.side;
     const double area = source.area() / (layout.voxelSize * layout.voxelSize);
+    const double ofThread =
+        4.0 * static_cast<double>(filter.bufferSize()) + 4.0 * std::pow(plan.interior, 3);
+    if (SpreadBricks::payFor(source, layout.voxelSize)) {
+        return memoryOfColumns(layout) + sizeof(std::uint32_t) * elements +
+               SpreadBricks::estimateMemory(source, plan, layout.voxelSize) +
+               threadCount() * ofThread;
+    }
+    // A tile of an ordinary shape holds about three times its own cross-section of the surface,
+    // and of the elements that much, each with a sample at least.
     const double inTile = elements * std::min(1.0, 3 * crossSection / area);
     constexpr double kGrowth = 2;  // of a vector that is filled without knowing its end
-    const double perThread = 4.0 * static_cast<double>(filter.bufferSize()) +
-                             4.0 * std::pow(plan.interior, 3) +
-                             kGrowth * sizeof(SurfaceSample) * std::max(8 * crossSection, inTile);
+    const double perThread =
+        ofThread + kGrowth * sizeof(SurfaceSample) * std::max(8 * crossSection, inTile);
     // So many tiles along an axis meet an element of no size.
     const double tilesOfElement = 1 + 2.0 * (plan.halo + 1) / plan.interior;
     const double bins = sizeof(std::uint32_t) * elements * tilesOfElement * (tilesOfElement + 1);

@@ -28,6 +28,13 @@ class TileFilter {
     /// begin. They extend over `plan.side` voxels along each axis.
     openvdb::Vec3d regionOffset() const;
 
+    /// The lattice of a buffer. A place of the region lies at the node that is `shift()` further
+    /// along each axis; what is spread there reaches nodes up to `reachBehind()` behind the region
+    /// along x and y, and z up to what the kernel is padded to.
+    SpreadLattice lattice(float* buffer) const { return {buffer, mFft.yCount(), mFft.zStride()}; }
+    int shift() const { return mShift; }
+    int reachBehind() const { return mMargin; }
+
     /// Spreads the samples (positions from the region's beginning) onto the buffer, which must
     /// be all zero.
     void spread(std::span<const SurfaceSample> samples, float* buffer) const;

@@ -1,6 +1,7 @@
 #include "core/words.h"
 #include "source/cap_holes.h"
 #include "source/compensated_sum.h"
+#include "source/index_blocks.h"
 #include "source/mesh_bounds.h"
 #include "source/orient_components.h"
 #include "source/remove_duplicates.h"
@@ -42,9 +43,14 @@ void checkMesh(const Mesh& mesh) {
                                           " triangles; expected at most " + std::to_string(kMost) +
                                           " of each");
     }
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const std::size_t pointCount = mesh.points.size();
+    const std::size_t wrong = countIndices(mesh.triangles.size(), [&](std::size_t i) {
+        const Vec3I& t = mesh.triangles[i];
+        return std::max({t[0], t[1], t[2]}) >= pointCount;
+    });
+    for (std::size_t i = 0; wrong > 0 && i < mesh.triangles.size(); ++i) {
         for (int k = 0; k < 3; ++k) {
-            if (mesh.triangles[i][k] < mesh.points.size()) continue;
+            if (mesh.triangles[i][k] < pointCount) continue;
             throw Error(ErrorKind::Input, "triangle " + std::to_string(i) + " refers to point " +
                                               std::to_string(mesh.triangles[i][k]) +
                                               "; expected less than " +
@@ -67,14 +73,13 @@ double largestCoordinate(const Mesh& mesh) {
 }
 
 std::size_t countWithoutArea(const Mesh& mesh) {
-    return static_cast<std::size_t>(
-        std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&mesh](const Vec3I& t) {
-            const Vec3d e1 = mesh.points[t[1]] - mesh.points[t[0]];
-            const Vec3d e2 = mesh.points[t[2]] - mesh.points[t[0]];
-            const double longest =
-                std::max({e1.lengthSqr(), e2.lengthSqr(), (e2 - e1).lengthSqr()});
-            return e1.cross(e2).length() <= kNoHeight * longest;
-        }));
+    return countIndices(mesh.triangles.size(), [&](std::size_t i) {
+        const Vec3I& t = mesh.triangles[i];
+        const Vec3d e1 = mesh.points[t[1]] - mesh.points[t[0]];
+        const Vec3d e2 = mesh.points[t[2]] - mesh.points[t[0]];
+        const double longest = std::max({e1.lengthSqr(), e2.lengthSqr(), (e2 - e1).lengthSqr()});
+        return e1.cross(e2).length() <= kNoHeight * longest;
+    });
 }
 
 void requireTolerance(double tolerance, const char* name) {
@@ -230,18 +235,18 @@ ClosedMesh closeMesh(Mesh mesh, const CloseMeshOptions& options, Progress& progr
     if (mesh.triangles.empty()) {
         throw Error(ErrorKind::Input, "the mesh has no triangle with an area; expected a solid");
     }
-    const StitchedCracks cracks =
-        stitchCracks(mesh,
-                     std::max(options.crackTolerance * longestSide(mesh),
-                              options.weldTolerance * largestCoordinate(mesh)),
-                     progress);
+    StitchedCracks cracks = stitchCracks(mesh,
+                                         std::max(options.crackTolerance * longestSide(mesh),
+                                                  options.weldTolerance * largestCoordinate(mesh)),
+                                         progress);
     report.crackPoints = cracks.pointsJoined;
     report.edgesSplit = cracks.edgesSplit;
     report.degenerateTriangles += countWithoutArea(mesh);
     advance();
 
     // Make the pieces consistent and closed.
-    MeshComponents components = orientComponents(mesh);
+    MeshComponents components = orientComponents(mesh, cracks.edges);
+    cracks.edges = {};
     report.components = components.count;
     report.oneSided = components.oneSided.size();
     report.problem = problemOfSides(mesh, components);

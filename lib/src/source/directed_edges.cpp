@@ -4,23 +4,29 @@
 
 namespace bandvox {
 
+PointLists listEdges(const DirectedEdges& edges, std::size_t pointCount) {
+    PointLists lists = listByPoint<3>(
+        edges.triangles(), pointCount,
+        [](const openvdb::Vec3I& t, int k) { return std::min(t[k], t[(k + 1) % 3]); });
+    forEachIndexBlock(pointCount, [&](std::size_t firstPoint, std::size_t endPoint) {
+        // An edge's number, below its higher end.
+        std::vector<std::uint64_t> keys;
+        for (std::size_t p = firstPoint; p < endPoint; ++p) {
+            keys.clear();
+            std::uint32_t* items = lists.items.data() + lists.start[p];
+            const std::size_t count = lists.start[p + 1] - lists.start[p];
+            for (std::size_t i = 0; i < count; ++i) {
+                keys.push_back(std::uint64_t{edges.high(items[i])} << 32 | items[i]);
+            }
+            std::sort(keys.begin(), keys.end());
+            for (std::size_t i = 0; i < count; ++i) items[i] = static_cast<std::uint32_t>(keys[i]);
+        }
+    });
+    return lists;
+}
+
 std::vector<std::uint32_t> groupEdges(const DirectedEdges& edges, std::size_t pointCount) {
-    // Collect them by their lower end, then sort the few of each point.
-    std::vector<std::size_t> start(pointCount + 1, 0);
-    const auto edgeCount = static_cast<std::uint32_t>(edges.count());
-    for (std::uint32_t e = 0; e < edgeCount; ++e) ++start[edges.low(e) + 1];
-    for (std::size_t i = 0; i < pointCount; ++i) start[i + 1] += start[i];
-    std::vector<std::uint32_t> order(edgeCount);
-    std::vector<std::size_t> cursor = start;
-    for (std::uint32_t e = 0; e < edgeCount; ++e) order[cursor[edges.low(e)]++] = e;
-    for (std::size_t i = 0; i < pointCount; ++i) {
-        std::sort(order.begin() + static_cast<std::ptrdiff_t>(start[i]),
-                  order.begin() + static_cast<std::ptrdiff_t>(start[i + 1]),
-                  [&](std::uint32_t a, std::uint32_t b) {
-                      return std::pair(edges.high(a), a) < std::pair(edges.high(b), b);
-                  });
-    }
-    return order;
+    return std::move(listEdges(edges, pointCount).items);
 }
 
 }  // namespace bandvox

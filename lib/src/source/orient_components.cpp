@@ -2,8 +2,10 @@
 
 #include "source/directed_edges.h"
 #include "source/no_index.h"
+#include "source/triangle_neighbors.h"
 
 #include <algorithm>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -61,66 +63,68 @@ class Walk {
 };
 
 /// Appends, for each piece, how often a group's edge is left over in one direction.
-void appendBoundary(const DirectedEdges& edges, const std::uint32_t* begin,
-                    const std::uint32_t* end, const std::vector<char>& flipped,
-                    MeshComponents& components) {
+void appendBoundary(const DirectedEdges& edges, std::span<const std::uint32_t> group,
+                    const std::vector<char>& flipped, const std::vector<std::uint32_t>& ofTriangle,
+                    std::vector<BoundaryEdge>& boundary) {
     std::vector<std::pair<std::uint32_t, int>> turns;  // component; +1 from low to high end
-    for (const std::uint32_t* e = begin; e != end; ++e) {
-        const bool rises = edges.rises(*e) != (flipped[*e / 3] != 0);
-        turns.emplace_back(components.ofTriangle[*e / 3], rises ? 1 : -1);
+    for (const std::uint32_t e : group) {
+        const bool rises = edges.rises(e) != (flipped[e / 3] != 0);
+        turns.emplace_back(ofTriangle[e / 3], rises ? 1 : -1);
     }
     std::sort(turns.begin(), turns.end());
     for (std::size_t i = 0; i < turns.size();) {
         const std::uint32_t component = turns[i].first;
         int net = 0;
         for (; i < turns.size() && turns[i].first == component; ++i) net += turns[i].second;
-        const std::uint32_t low = edges.low(*begin);
-        const std::uint32_t high = edges.high(*begin);
-        for (; net > 0; --net) components.boundary.push_back({component, low, high});
-        for (; net < 0; ++net) components.boundary.push_back({component, high, low});
+        const std::uint32_t low = edges.low(group.front());
+        const std::uint32_t high = edges.high(group.front());
+        for (; net > 0; --net) boundary.push_back({component, low, high});
+        for (; net < 0; ++net) boundary.push_back({component, high, low});
     }
 }
 
 }  // namespace
 
-MeshComponents orientComponents(Mesh& mesh) {
+MeshComponents orientComponents(Mesh& mesh, const PointLists& lists) {
     const DirectedEdges edges(mesh);
-    const std::vector<std::uint32_t> order = groupEdges(edges, mesh.points.size());
-
     MeshComponents components;
-    components.ofTriangle.assign(mesh.triangles.size(), kNoIndex);
-
-    // Find the neighbours across edges of exactly two triangles.
-    std::vector<std::uint32_t> mate(edges.count(), kNoIndex);
-    forEachGroup(edges, order, [&](std::size_t begin, std::size_t end) {
-        if (end - begin == 2) {
-            mate[order[begin]] = order[begin + 1];
-            mate[order[begin + 1]] = order[begin];
-        } else if (end - begin > 2) {
-            ++components.nonManifoldEdges;
-        }
-    });
-
     std::vector<char> flipped(mesh.triangles.size(), 0);
-    Walk walk(edges, mate, components, flipped);
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-        if (components.ofTriangle[t] == kNoIndex) walk.visitComponent(t);
+    {
+        const TriangleNeighbors neighbors = findNeighbors(edges, lists);
+        components.nonManifoldEdges = neighbors.crowdedEdges;
+        if (neighbors.agree) {
+            // Then there is nothing to flip, and no need to walk.
+            ConnectedTriangles connected = connectNeighbors(neighbors);
+            components.ofTriangle = std::move(connected.setOf);
+            components.count = connected.count;
+        } else {
+            components.ofTriangle.assign(mesh.triangles.size(), kNoIndex);
+            Walk walk(edges, neighbors.mate, components, flipped);
+            for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+                if (components.ofTriangle[t] == kNoIndex) walk.visitComponent(t);
+            }
+        }
     }
 
     // Collect what each piece leaves open.
-    forEachGroup(edges, order, [&](std::size_t begin, std::size_t end) {
-        if (end - begin == 2 &&
-            (edges.rises(order[begin]) != (flipped[order[begin] / 3] != 0)) !=
-                (edges.rises(order[begin + 1]) != (flipped[order[begin + 1] / 3] != 0))) {
-            return;
-        }
-        appendBoundary(edges, order.data() + begin, order.data() + end, flipped, components);
-    });
+    std::vector<std::vector<BoundaryEdge>> boundaries(indexBlocks(mesh.points.size()));
+    forEachGroupInBlocks(
+        edges, lists, [&](std::size_t block, std::span<const std::uint32_t> group) {
+            const auto rises = [&](std::uint32_t e) {
+                return edges.rises(e) != (flipped[e / 3] != 0);
+            };
+            if (group.size() == 2 && rises(group[0]) != rises(group[1])) return;
+            appendBoundary(edges, group, flipped, components.ofTriangle, boundaries[block]);
+        });
+    for (const std::vector<BoundaryEdge>& part : boundaries) {
+        components.boundary.insert(components.boundary.end(), part.begin(), part.end());
+    }
     std::sort(components.boundary.begin(), components.boundary.end(),
               [](const BoundaryEdge& a, const BoundaryEdge& b) {
                   return std::tie(a.component, a.from, a.to) < std::tie(b.component, b.from, b.to);
               });
 
+    if (components.trianglesFlipped == 0) return components;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         if (flipped[t] != 0) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
     }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "source/point_lists.h"
+
 #include <bandvox/source/mesh.h>
 
 #include <cstddef>
@@ -26,7 +28,8 @@ struct MeshComponents {
 };
 
 /// Splits a mesh into pieces connected across edges of exactly two triangles, and turns the
-/// triangles of each piece to agree, flipping the fewer of them.
-MeshComponents orientComponents(Mesh& mesh);
+/// triangles of each piece to agree, flipping the fewer of them. `lists`:
+/// the mesh's edges, as listEdges has them.
+MeshComponents orientComponents(Mesh& mesh, const PointLists& lists);
 
 }  // namespace bandvox

@@ -1,8 +1,12 @@
 #include "source/remove_duplicates.h"
 
+#include "source/index_blocks.h"
+#include "source/point_lists.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace bandvox {
@@ -51,9 +55,40 @@ std::vector<SortedTriangle> groupTriangles(const Mesh& mesh) {
     return list;
 }
 
+/// True if any two of these triangles have equal corners.
+bool haveEqual(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
+    std::vector<std::array<std::uint32_t, 3>> corners;
+    corners.reserve(triangles.size());
+    for (const std::uint32_t t : triangles) corners.push_back(sorted(mesh.triangles[t], t).corner);
+    std::sort(corners.begin(), corners.end());
+    return std::adjacent_find(corners.begin(), corners.end()) != corners.end();
+}
+
+/// True if any two triangles have equal corners.
+bool haveDuplicates(const Mesh& mesh) {
+    const PointLists lists =
+        listByPoint<1>(mesh.triangles, mesh.points.size(), [](const openvdb::Vec3I& t, int) {
+            return std::min({t[0], t[1], t[2]});
+        });
+    return countIndices(mesh.points.size(), [&](std::size_t point) {
+               const std::span<const std::uint32_t> list = lists.of(point);
+               // A point may be the lowest corner of many, as the middle of a fan.
+               constexpr std::size_t kFew = 32;
+               if (list.size() > kFew) return haveEqual(mesh, list);
+               for (std::size_t i = 0; i < list.size(); ++i) {
+                   const auto corner = sorted(mesh.triangles[list[i]], list[i]).corner;
+                   for (std::size_t k = 0; k < i; ++k) {
+                       if (sorted(mesh.triangles[list[k]], list[k]).corner == corner) return true;
+                   }
+               }
+               return false;
+           }) > 0;
+}
+
 }  // namespace
 
 std::size_t removeDuplicates(Mesh& mesh) {
+    if (!haveDuplicates(mesh)) return 0;
     const std::vector<SortedTriangle> list = groupTriangles(mesh);
 
     // Find the groups, and how many triangles have another that faces the opposite way.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -23,14 +24,22 @@ constexpr double kWidestCrack = 0.1;
 // What is joined may bring more to lie on an edge.
 constexpr int kMostRounds = 4;
 
+PointLists edgesOf(const Mesh& mesh) {
+    return listEdges(DirectedEdges(mesh), mesh.points.size());
+}
+
 /// Directed edges, by their numbers, that only one triangle has.
-std::vector<std::uint32_t> boundaryEdges(const Mesh& mesh) {
+std::vector<std::uint32_t> boundaryEdges(const Mesh& mesh, const PointLists& lists) {
     const DirectedEdges edges(mesh);
-    const std::vector<std::uint32_t> order = groupEdges(edges, mesh.points.size());
+    std::vector<std::vector<std::uint32_t>> parts(indexBlocks(mesh.points.size()));
+    forEachGroupInBlocks(edges, lists,
+                         [&](std::size_t block, std::span<const std::uint32_t> group) {
+                             if (group.size() == 1) parts[block].push_back(group.front());
+                         });
     std::vector<std::uint32_t> boundary;
-    forEachGroup(edges, order, [&](std::size_t begin, std::size_t end) {
-        if (end - begin == 1) boundary.push_back(order[begin]);
-    });
+    for (const std::vector<std::uint32_t>& part : parts) {
+        boundary.insert(boundary.end(), part.begin(), part.end());
+    }
     std::sort(boundary.begin(), boundary.end());
     return boundary;
 }
@@ -193,21 +202,28 @@ std::size_t splitEdges(Mesh& mesh, const std::vector<OnEdge>& onEdges) {
 
 StitchedCracks stitchCracks(Mesh& mesh, double tolerance, Progress& progress) {
     StitchedCracks stitched;
+    stitched.edges = edgesOf(mesh);
     for (int round = 0; round < kMostRounds; ++round) {
-        std::vector<std::uint32_t> boundary = boundaryEdges(mesh);
+        std::vector<std::uint32_t> boundary = boundaryEdges(mesh, stitched.edges);
         if (boundary.empty()) break;
         if (round == 0) {
             tolerance = std::min(tolerance, kWidestCrack * usualLength(mesh, boundary));
         }
         const std::size_t joined = joinPoints(mesh, pointsOf(mesh, boundary), tolerance);
-        if (joined > 0) boundary = boundaryEdges(mesh);
+        if (joined > 0) {
+            stitched.edges = edgesOf(mesh);
+            boundary = boundaryEdges(mesh, stitched.edges);
+        }
         const std::size_t split =
             splitEdges(mesh, findOnEdges(mesh, boundary, tolerance, progress));
+        if (split > 0) stitched.edges = edgesOf(mesh);
         stitched.pointsJoined += joined;
         stitched.edgesSplit += split;
         if (split == 0) break;
     }
+    const std::size_t points = mesh.points.size();
     removeUnusedPoints(mesh);
+    if (mesh.points.size() < points) stitched.edges = edgesOf(mesh);
     return stitched;
 }
 

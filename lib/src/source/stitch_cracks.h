@@ -1,5 +1,7 @@
 #pragma once
 
+#include "source/point_lists.h"
+
 #include <bandvox/core/progress.h>
 #include <bandvox/source/mesh.h>
 
@@ -11,6 +13,7 @@ namespace bandvox {
 struct StitchedCracks {
     std::size_t pointsJoined = 0;  ///< that fell together with another across a crack
     std::size_t edgesSplit = 0;    ///< at points of other triangles that lie on them: T-junctions
+    PointLists edges;              ///< of the mesh that is left, as listEdges has them
 };
 
 /// Closes cracks between triangles, as far as they are no wider than `tolerance` (world units):

@@ -1,11 +1,15 @@
 #include "source/triangle_meetings.h"
 
+#include "source/box_pairs.h"
+#include "source/certain_turn.h"
+#include "source/index_blocks.h"
+#include "source/unfolded_stars.h"
+
 #include <bandvox/core/memory.h>
 #include <bandvox/core/parallel.h>
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/box_intersection_d.h>
 
 #include <algorithm>
 #include <array>
@@ -38,11 +42,12 @@ typename K::Triangle_3 triangleOf(const Mesh& mesh, std::uint32_t triangle) {
 /// Decides which of two triangles whose boxes meet do so themselves.
 class MeetingTest {
   public:
-    explicit MeetingTest(const Mesh& mesh) : mMesh(mesh), mNoArea(mesh.triangles.size()) {
-        parallelFor(blocks(mNoArea.size()), [&](std::int64_t block) {
-            forBlock(block, mNoArea.size(), [&](std::size_t i) {
-                mNoArea[i] = hasNoArea(mesh, static_cast<std::uint32_t>(i)) ? 1 : 0;
-            });
+    /// `facings`: those of certainFacings; what faces somewhere has an area.
+    MeetingTest(const Mesh& mesh, const std::vector<std::uint8_t>& facings)
+        : mMesh(mesh), mNoArea(mesh.triangles.size()) {
+        forEachIndex(mNoArea.size(), [&](std::size_t i) {
+            const auto triangle = static_cast<std::uint32_t>(i);
+            mNoArea[i] = facings[i] == 0 && hasNoArea(mesh, triangle) ? 1 : 0;
         });
     }
 
@@ -66,19 +71,7 @@ class MeetingTest {
         }
     }
 
-    static std::int64_t blocks(std::size_t count) {
-        return static_cast<std::int64_t>((count + kBlock - 1) / kBlock);
-    }
-
-    template <typename Visit>
-    static void forBlock(std::int64_t block, std::size_t count, const Visit& visit) {
-        const std::size_t begin = static_cast<std::size_t>(block) * kBlock;
-        for (std::size_t i = begin; i < std::min(begin + kBlock, count); ++i) visit(i);
-    }
-
   private:
-    static constexpr std::size_t kBlock = 4096;
-
     /// Corners, by their place in either triangle, that two triangles have in common.
     struct Shared {
         int count = 0;
@@ -192,65 +185,64 @@ class MeetingTest {
     std::vector<char> mNoArea;
 };
 
-using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::uint32_t,
-                                                      CGAL::Box_intersection_d::ID_EXPLICIT>;
-
-/// The boxes of triangles, by where they begin along the longest side of their common box, cut
-/// into groups. A group can meet itself, and those after it that begin before it ends.
-class BoxGroups {
+/// Passes over what certainly meets nowhere but in corners and edges, without exact arithmetic.
+class QuickTest {
   public:
-    explicit BoxGroups(const Mesh& mesh) : mBoxes(mesh.triangles.size()) {
-        openvdb::BBoxd whole;
-        for (const openvdb::Vec3d& point : mesh.points) whole.expand(point);
-        mAxis = static_cast<int>(whole.maxExtent());
-        for (std::uint32_t i = 0; i < mBoxes.size(); ++i) {
-            openvdb::BBoxd box;
-            for (int k = 0; k < 3; ++k) box.expand(mesh.points[mesh.triangles[i][k]]);
-            const openvdb::Vec3d low = box.min(), high = box.max();
-            mBoxes[i] = {{low.x(), low.y(), low.z(), high.x(), high.y(), high.z()}, i};
+    explicit QuickTest(const Mesh& mesh)
+        : mMesh(mesh),
+          mFacings(certainFacings(mesh)),
+          mUnfolded(findUnfoldedStars(mesh, mFacings)) {}
+
+    const std::vector<std::uint8_t>& facings() const { return mFacings; }
+
+    bool areSurelyApart(const Pair& pair) const {
+        const auto [a, b] = pair;
+        bool share = false;
+        for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < 3; ++j) {
+                const std::uint32_t point = mMesh.triangles[a][i];
+                if (point != mMesh.triangles[b][j]) continue;
+                if (mUnfolded[point] != 0) return true;
+                share = true;
+            }
         }
-        std::sort(mBoxes.begin(), mBoxes.end(), [this](const Box& a, const Box& b) {
-            const double first = a.min_coord(mAxis), second = b.min_coord(mAxis);
-            return first != second ? first < second : a.info() < b.info();
-        });
-        // Few groups, as one may meet all after it.
-        constexpr std::size_t kLeast = 4096, kMostGroups = 64;
-        mSize = std::max(kLeast, (mBoxes.size() + kMostGroups - 1) / kMostGroups);
-    }
-
-    std::int64_t count() const {
-        return static_cast<std::int64_t>((mBoxes.size() + mSize - 1) / mSize);
-    }
-
-    /// Calls visit(pair) for each pair of triangles whose boxes meet, the first to begin one of
-    /// the group.
-    template <typename Visit>
-    void forCandidates(std::int64_t group, const Visit& visit) const {
-        const std::size_t begin = static_cast<std::size_t>(group) * mSize;
-        const std::size_t end = std::min(begin + mSize, mBoxes.size());
-        const auto at = [this](std::size_t i) {
-            return mBoxes.begin() + static_cast<std::ptrdiff_t>(i);
-        };
-        std::vector<Box> own(at(begin), at(end));
-        double last = own.front().max_coord(mAxis);
-        for (const Box& box : own) last = std::max(last, box.max_coord(mAxis));
-        std::size_t beyond = end;
-        while (beyond < mBoxes.size() && mBoxes[beyond].min_coord(mAxis) <= last) ++beyond;
-        std::vector<Box> later(at(end), at(beyond));
-        // So few boxes are swept over rather than divided further. CGAL's own bound of 10 takes
-        // half as long again for a mesh of small triangles.
-        constexpr std::ptrdiff_t kSwept = 500;
-        const auto found = [&](const Box& a, const Box& b) {
-            visit(Pair(std::minmax(a.info(), b.info())));
-        };
-        CGAL::box_intersection_d(own.begin(), own.end(), later.begin(), later.end(), found, kSwept);
-        CGAL::box_self_intersection_d(own.begin(), own.end(), found, kSwept);
+        if (share) return false;
+        const Corners ofA = corners(a), ofB = corners(b);
+        for (int axis = 0; axis < 3; ++axis) {
+            if (isEdgeBetween(ofA, mFacings[a], ofB, axis)) return true;
+            if (isEdgeBetween(ofB, mFacings[b], ofA, axis)) return true;
+        }
+        return false;
     }
 
   private:
-    std::vector<Box> mBoxes;
-    int mAxis = 0;
-    std::size_t mSize = 0;
+    using Corners = std::array<const openvdb::Vec3d*, 3>;
+
+    Corners corners(std::uint32_t triangle) const {
+        const openvdb::Vec3I& t = mMesh.triangles[triangle];
+        return {&mMesh.points[t[0]], &mMesh.points[t[1]], &mMesh.points[t[2]]};
+    }
+
+    /// True if an edge of `own`, seen along an axis, certainly has all of `other` beyond it.
+    static bool isEdgeBetween(const Corners& own, unsigned facing, const Corners& other, int axis) {
+        const unsigned turn = facing >> (2 * axis) & 3;
+        if (turn == 0) return false;
+        const int outside = turn == 1 ? -1 : 1;
+        const View2 view = viewAlong(axis);
+        for (int i = 0; i < 3; ++i) {
+            const openvdb::Vec3d &from = *own[i], &to = *own[(i + 1) % 3];
+            if (certainTurn(from, to, *other[0], view) == outside &&
+                certainTurn(from, to, *other[1], view) == outside &&
+                certainTurn(from, to, *other[2], view) == outside) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    const Mesh& mMesh;
+    std::vector<std::uint8_t> mFacings;
+    std::vector<std::uint8_t> mUnfolded;
 };
 
 }  // namespace
@@ -262,25 +254,35 @@ bool hasNoArea(const Mesh& mesh, std::uint32_t triangle) {
 }
 
 std::vector<TriangleMeeting> findMeetings(const Mesh& mesh, Progress& progress) {
-    const MeetingTest test(mesh);
-    const BoxGroups groups(mesh);
-    std::vector<std::vector<TriangleMeeting>> found(static_cast<std::size_t>(groups.count()));
+    const QuickTest quick(mesh);
+    const MeetingTest test(mesh, quick.facings());
+    progress.throwIfInterrupted();
+    const BoxPairs boxes(mesh);
+    constexpr std::size_t kLeavesOfTask = 256;
+    const std::size_t tasks = (boxes.leafCount() + kLeavesOfTask - 1) / kLeavesOfTask;
+    std::vector<std::vector<TriangleMeeting>> found(tasks);
     std::atomic<std::size_t> count = 0;
-    parallelFor(groups.count(), [&](std::int64_t group) {
-        std::size_t visited = 0;
-        groups.forCandidates(group, [&](const Pair& pair) {
-            constexpr std::size_t kNowAndThen = 4096;
-            if (visited++ % kNowAndThen == 0) progress.throwIfInterrupted();
-            const auto meeting = test(pair);
-            if (!meeting) return;
-            found[static_cast<std::size_t>(group)].push_back(*meeting);
-            // There may be more of them than the memory holds: each takes about a thousand bytes
-            // while it is cut.
-            const std::size_t known = ++count;
-            if (known % kNowAndThen != 0) return;
-            requireMemory(1000.0 * static_cast<double>(known),
-                          "the union of so many triangles that cut each other");
-        });
+    parallelFor(static_cast<std::int64_t>(tasks), [&](std::int64_t task) {
+        const std::size_t first = static_cast<std::size_t>(task) * kLeavesOfTask;
+        std::vector<Pair> pairs;
+        for (std::size_t i = first; i < std::min(first + kLeavesOfTask, boxes.leafCount()); ++i) {
+            progress.throwIfInterrupted();
+            pairs.clear();
+            boxes.appendPairs(i, pairs);
+            for (const Pair& pair : pairs) {
+                if (quick.areSurelyApart(pair)) continue;
+                const auto meeting = test(std::minmax(pair.first, pair.second));
+                if (!meeting) continue;
+                found[static_cast<std::size_t>(task)].push_back(*meeting);
+                // There may be more of them than the memory holds: each takes about a thousand
+                // bytes while it is cut.
+                constexpr std::size_t kNowAndThen = 4096;
+                const std::size_t known = ++count;
+                if (known % kNowAndThen != 0) continue;
+                requireMemory(1000.0 * static_cast<double>(known),
+                              "the union of so many triangles that cut each other");
+            }
+        }
     });
     std::vector<TriangleMeeting> meetings;
     for (const auto& part : found) meetings.insert(meetings.end(), part.begin(), part.end());

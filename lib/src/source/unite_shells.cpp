@@ -4,6 +4,7 @@
 #include "source/mesh_arrangement.h"
 #include "source/no_index.h"
 #include "source/ray_crossing.h"
+#include "source/triangle_neighbors.h"
 #include "source/weld_points.h"
 
 #include <bandvox/core/error.h>
@@ -11,9 +12,11 @@
 #include <bandvox/source/unite_shells.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 
 namespace bandvox {
@@ -25,41 +28,9 @@ using openvdb::Vec3I;
 
 /// Parts of the surface that no other part meets but at their borders. All of a patch has the same
 /// number of layers, and the same winding numbers on its two sides.
-struct Patches {
-    std::vector<std::uint32_t> ofTriangle;
-    std::size_t count = 0;
-};
-
-Patches findPatches(const Mesh& mesh) {
+ConnectedTriangles findPatches(const Mesh& mesh) {
     const DirectedEdges edges(mesh);
-    const std::vector<std::uint32_t> order = groupEdges(edges, mesh.points.size());
-    std::vector<std::uint32_t> mate(edges.count(), kNoIndex);
-    forEachGroup(edges, order, [&](std::size_t begin, std::size_t end) {
-        if (end - begin != 2) return;
-        mate[order[begin]] = order[begin + 1];
-        mate[order[begin + 1]] = order[begin];
-    });
-    Patches patches;
-    patches.ofTriangle.assign(mesh.triangles.size(), kNoIndex);
-    std::vector<std::uint32_t> pending;
-    for (std::uint32_t seed = 0; seed < mesh.triangles.size(); ++seed) {
-        if (patches.ofTriangle[seed] != kNoIndex) continue;
-        const auto patch = static_cast<std::uint32_t>(patches.count++);
-        patches.ofTriangle[seed] = patch;
-        pending.assign(1, seed);
-        while (!pending.empty()) {
-            const std::uint32_t t = pending.back();
-            pending.pop_back();
-            for (std::uint32_t e = 3 * t; e < 3 * t + 3; ++e) {
-                if (mate[e] == kNoIndex) continue;
-                const std::uint32_t next = mate[e] / 3;
-                if (patches.ofTriangle[next] != kNoIndex) continue;
-                patches.ofTriangle[next] = patch;
-                pending.push_back(next);
-            }
-        }
-    }
-    return patches;
+    return connectNeighbors(findNeighbors(edges, listEdges(edges, mesh.points.size())));
 }
 
 /// Coordinates from those that follow `axis`, so that it becomes x.
@@ -77,13 +48,13 @@ struct View {
 /// Finds how often the surface winds around the two sides of each patch.
 class Windings {
   public:
-    Windings(const MeshArrangement& arrangement, const Patches& patches)
+    Windings(const MeshArrangement& arrangement, const ConnectedTriangles& patches)
         : mMesh(arrangement.mesh), mLayers(arrangement.layers), mViews(patches.count) {
         // What is seen largest is the least likely to lie where rounding decides.
         for (std::uint32_t t = 0; t < mMesh.triangles.size(); ++t) {
             const std::array<Vec3d, 3> c = corners(t, 0);
             const Vec3d normal = (c[1] - c[0]).cross(c[2] - c[0]);
-            View& view = mViews[patches.ofTriangle[t]];
+            View& view = mViews[patches.setOf[t]];
             for (int axis = 0; axis < 3; ++axis) {
                 // One axis takes one search tree: stay with the first unless another is far better.
                 const double area = (axis == 0 ? 16 : 1) * std::abs(normal[axis]);
@@ -137,7 +108,7 @@ class Windings {
 /// Which patches stay, and which of them are turned.
 enum class Fate : char { Dropped, Kept, Turned };
 
-std::vector<Fate> decide(const MeshArrangement& arrangement, const Patches& patches,
+std::vector<Fate> decide(const MeshArrangement& arrangement, const ConnectedTriangles& patches,
                          Progress& progress) {
     const Windings windings(arrangement, patches);
     std::vector<Fate> fates(patches.count, Fate::Dropped);
@@ -152,11 +123,12 @@ std::vector<Fate> decide(const MeshArrangement& arrangement, const Patches& patc
 }
 
 /// Keeps the triangles of patches that stay. Returns how many went.
-std::size_t keepPatches(Mesh& mesh, const Patches& patches, const std::vector<Fate>& fates) {
+std::size_t keepPatches(Mesh& mesh, const ConnectedTriangles& patches,
+                        const std::vector<Fate>& fates) {
     const std::size_t before = mesh.triangles.size();
     std::size_t kept = 0;
     for (std::size_t t = 0; t < before; ++t) {
-        const Fate fate = fates[patches.ofTriangle[t]];
+        const Fate fate = fates[patches.setOf[t]];
         if (fate == Fate::Dropped) continue;
         Vec3I triangle = mesh.triangles[t];
         if (fate == Fate::Turned) std::swap(triangle[1], triangle[2]);
@@ -170,13 +142,13 @@ std::size_t keepPatches(Mesh& mesh, const Patches& patches, const std::vector<Fa
 /// True if every directed edge has its opposite.
 bool isClosed(const Mesh& mesh) {
     const DirectedEdges edges(mesh);
-    const std::vector<std::uint32_t> order = groupEdges(edges, mesh.points.size());
-    bool closed = true;
-    forEachGroup(edges, order, [&](std::size_t begin, std::size_t end) {
-        int net = 0;
-        for (std::size_t i = begin; i < end; ++i) net += edges.rises(order[i]) ? 1 : -1;
-        closed = closed && net == 0;
-    });
+    std::atomic<bool> closed = true;
+    forEachGroupInBlocks(edges, listEdges(edges, mesh.points.size()),
+                         [&](std::size_t, std::span<const std::uint32_t> group) {
+                             int net = 0;
+                             for (const std::uint32_t e : group) net += edges.rises(e) ? 1 : -1;
+                             if (net != 0) closed = false;
+                         });
     return closed;
 }
 
@@ -197,7 +169,7 @@ UnitedMesh uniteShells(Mesh mesh, Progress& progress) {
     report.trianglesCut = arrangement.trianglesCut;
 
     // Drop what is inside, or bounds nothing.
-    const Patches patches = findPatches(arrangement.mesh);
+    const ConnectedTriangles patches = findPatches(arrangement.mesh);
     if (meetings.empty() && patches.count == 1) {
         united.mesh = std::move(arrangement.mesh);
         return united;

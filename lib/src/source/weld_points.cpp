@@ -1,11 +1,15 @@
 #include "source/weld_points.h"
 
+#include "source/index_blocks.h"
+#include "source/near_points.h"
 #include "source/no_index.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -158,13 +162,18 @@ std::vector<std::uint32_t> weldNear(std::vector<Vec3d>& points, double tolerance
 }  // namespace
 
 void removeUnusedPoints(Mesh& mesh) {
+    std::vector<std::uint8_t> used(mesh.points.size(), 0);
+    forEachIndex(mesh.triangles.size(), [&](std::size_t t) {
+        for (int i = 0; i < 3; ++i) {
+            std::atomic_ref<std::uint8_t> mark(used[mesh.triangles[t][i]]);
+            if (mark.load(std::memory_order_relaxed) == 0) mark.store(1, std::memory_order_relaxed);
+        }
+    });
+    if (std::count(used.begin(), used.end(), 0) == 0) return;
     std::vector<std::uint32_t> newIndex(mesh.points.size(), kNoIndex);
-    for (const openvdb::Vec3I& t : mesh.triangles) {
-        for (int i = 0; i < 3; ++i) newIndex[t[i]] = 0;
-    }
     std::uint32_t count = 0;
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-        if (newIndex[i] == kNoIndex) continue;
+        if (used[i] == 0) continue;
         mesh.points[count] = mesh.points[i];
         newIndex[i] = count++;
     }
@@ -174,7 +183,8 @@ void removeUnusedPoints(Mesh& mesh) {
 
 std::size_t weldPoints(Mesh& mesh, double tolerance) {
     const std::size_t before = mesh.points.size();
-    renumber(mesh, weld(mesh.points, tolerance));
+    const std::vector<std::uint32_t> newIndex = weld(mesh.points, tolerance);
+    if (mesh.points.size() < before) renumber(mesh, newIndex);
     return before - mesh.points.size();
 }
 
@@ -185,14 +195,20 @@ std::size_t dropCollapsed(Mesh& mesh) {
 }
 
 std::vector<std::uint32_t> weld(std::vector<Vec3d>& points, double tolerance) {
-    std::vector<std::uint32_t> newIndex = weldEqual(points);
-
     // Below the rounding of doubles a tolerance means equality, and cell numbers would overflow.
     double largest = 0.0;
     for (const Vec3d& p : points) {
         for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(p[axis]));
     }
-    if (tolerance > 1e-15 * largest) {
+    const bool isNearEnough = tolerance > 1e-15 * largest;
+    if (!haveNearPoints(points, isNearEnough ? tolerance : 0)) {
+        std::vector<std::uint32_t> sameIndex(points.size());
+        std::iota(sameIndex.begin(), sameIndex.end(), 0U);
+        for (Vec3d& p : points) p += Vec3d(0.0);  // as weldEqual does
+        return sameIndex;
+    }
+    std::vector<std::uint32_t> newIndex = weldEqual(points);
+    if (isNearEnough) {
         const std::vector<std::uint32_t> ofEqual = weldNear(points, tolerance);
         for (std::uint32_t& index : newIndex) index = ofEqual[index];
     }
