@@ -1,0 +1,90 @@
+"""Imports a file as a band-limited volume, adds the mesh of its surface, and renders both side by side, without a window.
+
+    blender -b --factory-startup --python import_and_render.py -- INPUT PICTURE.png [RESOLUTION]
+
+INPUT: a mesh, points, a scan, a .vdb file, or a built-in shape such as shape:torus. RESOLUTION: voxels along the
+longest side, 64 by default. The volume is written beside the picture.
+"""
+
+import os
+import sys
+
+import bpy
+from mathutils import Vector
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import bandvox_volumes  # noqa: E402  (it lies beside this file)
+
+
+def import_both(source, folder, resolution):
+    """The volume as a solid, and beside it the mesh of its surface."""
+    bpy.ops.bandvox.import_volume(filepath=source, resolution=resolution, folder=folder)
+    volume = bpy.context.object
+    bpy.ops.bandvox.volume_material(look="SOLID", color=(0.75, 0.35, 0.15))
+    bpy.ops.bandvox.volume_surface(method="BANDVOX")
+    surface = bpy.context.object
+    surface.location.x += 1.15 * volume.dimensions.x
+    material = bpy.data.materials.new("surface")
+    material.diffuse_color = (0.2, 0.4, 0.7, 1)
+    material.use_nodes = True
+    material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (0.2, 0.4, 0.7, 1)
+    surface.data.materials.append(material)
+    bpy.context.view_layer.update()
+    return volume, surface
+
+
+def corners(things):
+    return [thing.matrix_world @ Vector(corner) for thing in things for corner in thing.bound_box]
+
+
+def add_camera_and_light(things):
+    points = corners(things)
+    low, high = (Vector(pick(point[axis] for point in points) for axis in range(3)) for pick in (min, max))
+    middle, radius = (low + high) / 2, (high - low).length / 2
+    camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    toward = Vector((0.25, -1, 0.6)).normalized()
+    camera.location = middle + 2.6 * radius * toward
+    camera.rotation_euler = toward.to_track_quat("Z", "Y").to_euler()
+    camera.data.clip_end = 10 * radius
+    sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
+    sun.data.energy = 5
+    sun.rotation_euler = Vector((-0.5, -0.6, 0.9)).to_track_quat("Z", "Y").to_euler()
+    for one in (camera, sun):
+        bpy.context.collection.objects.link(one)
+    bpy.context.scene.camera = camera
+    world = bpy.data.worlds.new("world")
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.6, 0.65, 0.7, 1)
+    bpy.context.scene.world = world
+
+
+def render(path, samples=32):
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    scene.cycles.device = "CPU"
+    scene.cycles.samples = samples
+    scene.cycles.use_denoising = False
+    scene.cycles.volume_bounces = 2
+    scene.render.resolution_x, scene.render.resolution_y = 128, 96
+    scene.render.resolution_percentage = 100
+    scene.view_settings.view_transform = "Standard"
+    scene.render.image_settings.file_format = "PNG"
+    scene.render.filepath = path
+    bpy.ops.render.render(write_still=True)
+
+
+def main():
+    words = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
+    if len(words) not in (2, 3):
+        sys.exit(f"import_and_render.py: {len(words)} arguments; expected INPUT PICTURE.png [RESOLUTION]")
+    source = words[0] if words[0].startswith("shape:") else os.path.abspath(words[0])
+    picture = os.path.abspath(words[1])
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bandvox_volumes.register()
+    things = import_both(source, os.path.dirname(picture), int(words[2]) if len(words) == 3 else 64)
+    add_camera_and_light(things)
+    render(picture)
+
+
+if __name__ == "__main__":
+    main()
