@@ -1,11 +1,12 @@
 """Imports a file as a band-limited volume, adds the mesh of its surface, and renders both side by side, without a window.
 
-    blender -b --factory-startup --python import_and_render.py -- INPUT PICTURE.png [RESOLUTION]
+    blender -b --factory-startup --python import_and_render.py -- INPUT PICTURE.png [--resolution N] ...
 
-INPUT: a mesh, points, a scan, a .vdb file, or a built-in shape such as shape:torus. RESOLUTION: voxels along the
-longest side, 64 by default. The volume is written beside the picture.
+INPUT: a mesh, points, a scan, a .vdb file, or a built-in shape such as shape:torus. The volume is written beside the
+picture.
 """
 
+import argparse
 import os
 import sys
 
@@ -16,9 +17,20 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import bandvox_volumes  # noqa: E402  (it lies beside this file)
 
 
-def import_both(source, folder, resolution):
+def parse_words():
+    parser = argparse.ArgumentParser(prog="import_and_render.py")
+    parser.add_argument("input")
+    parser.add_argument("picture")
+    parser.add_argument("--resolution", type=int, default=64, help="voxels along the longest side [%(default)s]")
+    parser.add_argument("--up", choices=["Y", "Z"], default="Z", help="what points up in the file [%(default)s]")
+    parser.add_argument("--size", type=int, nargs=2, default=[128, 96], help="of the picture, pixels [128 96]")
+    parser.add_argument("--samples", type=int, default=32, help="per pixel [%(default)s]")
+    return parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
+
+
+def import_both(source, folder, resolution, up):
     """The volume as a solid, and beside it the mesh of its surface."""
-    bpy.ops.bandvox.import_volume(filepath=source, resolution=resolution, folder=folder)
+    bpy.ops.bandvox.import_volume(filepath=source, resolution=resolution, up=up, folder=folder)
     volume = bpy.context.object
     bpy.ops.bandvox.volume_material(look="SOLID", color=(0.75, 0.35, 0.15))
     bpy.ops.bandvox.volume_surface(method="BANDVOX")
@@ -47,25 +59,25 @@ def add_camera_and_light(things):
     camera.rotation_euler = toward.to_track_quat("Z", "Y").to_euler()
     camera.data.clip_end = 10 * radius
     sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
-    sun.data.energy = 5
+    sun.data.energy = 3
     sun.rotation_euler = Vector((-0.5, -0.6, 0.9)).to_track_quat("Z", "Y").to_euler()
     for one in (camera, sun):
         bpy.context.collection.objects.link(one)
     bpy.context.scene.camera = camera
     world = bpy.data.worlds.new("world")
     world.use_nodes = True
-    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.6, 0.65, 0.7, 1)
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.35, 0.4, 0.45, 1)
     bpy.context.scene.world = world
 
 
-def render(path, samples=32):
+def render(path, size, samples):
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.cycles.device = "CPU"
     scene.cycles.samples = samples
     scene.cycles.use_denoising = False
     scene.cycles.volume_bounces = 2
-    scene.render.resolution_x, scene.render.resolution_y = 128, 96
+    scene.render.resolution_x, scene.render.resolution_y = size
     scene.render.resolution_percentage = 100
     scene.view_settings.view_transform = "Standard"
     scene.render.image_settings.file_format = "PNG"
@@ -74,16 +86,14 @@ def render(path, samples=32):
 
 
 def main():
-    words = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
-    if len(words) not in (2, 3):
-        sys.exit(f"import_and_render.py: {len(words)} arguments; expected INPUT PICTURE.png [RESOLUTION]")
-    source = words[0] if words[0].startswith("shape:") else os.path.abspath(words[0])
-    picture = os.path.abspath(words[1])
+    words = parse_words()
+    source = words.input if words.input.startswith("shape:") else os.path.abspath(words.input)
+    picture = os.path.abspath(words.picture)
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bandvox_volumes.register()
-    things = import_both(source, os.path.dirname(picture), int(words[2]) if len(words) == 3 else 64)
+    things = import_both(source, os.path.dirname(picture), words.resolution, words.up)
     add_camera_and_light(things)
-    render(picture)
+    render(picture, words.size, words.samples)
 
 
 if __name__ == "__main__":

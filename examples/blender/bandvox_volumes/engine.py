@@ -43,7 +43,7 @@ class GridFacts:
 
     name: str
     is_level_set: bool
-    voxel_size: float  # world units, the smallest side
+    voxel_size: tuple  # world units, along x, y and z
     iso: float         # the value that is the surface
     volume: float      # of the solid, cubic world units; 0 where the file does not say
 
@@ -186,4 +186,4 @@ def _facts_of(name, kind, voxel_size, metadata):
     iso = metadata("iso")
     if iso is None:
         iso = 0.0 if is_level_set else 0.5
-    return GridFacts(name, is_level_set, min(voxel_size), iso, metadata("grid_volume") or 0.0)
+    return GridFacts(name, is_level_set, tuple(voxel_size), iso, metadata("grid_volume") or 0.0)

@@ -117,16 +117,20 @@ class BANDVOX_OT_import(Reporting, LatticeSettings, bpy.types.Operator, ImportHe
         name="Up", items=[("Z", "Z", "The axes stay as they are"), ("Y", "Y", "Turn the object about x by 90 degrees")],
         description="What points up in the file")
 
+    align: BoolProperty(
+        name="Align", default=True,
+        description="Move the object back by the half voxel that Blender shows volumes too far along x, y and z")
+
     def draw(self, context):
         self.draw_lattice(self.layout)
-        self.layout.prop(self, "volumes")
-        self.layout.prop(self, "up")
+        for name in ("volumes", "up", "align"):
+            self.layout.prop(self, name)
 
     def work(self, context, engine):
         source = self.filepath if self.filepath.startswith("shape:") else bpy.path.abspath(self.filepath)
         name = os.path.splitext(os.path.basename(source))[0].replace("shape:", "")
         path = self._file_of(engine, source, name)
-        volume = scene.add_volume(context, name, path, engine.facts(path), self.up == "Y")
+        volume = scene.add_volume(context, name, path, engine.facts(path), self.up == "Y", self.align)
         scene.set_look_if_density(volume)
         return _told(volume)
 

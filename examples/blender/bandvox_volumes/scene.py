@@ -2,6 +2,9 @@
 
 Blender's units are taken for world units. Nothing is turned unless it is asked for: Blender's z is up, and so is the
 file's z.
+
+OpenVDB has a voxel's value at the voxel's index. Blender, in Cycles as in its modifier Volume to Mesh, shows it half a
+voxel further along x, y and z. So new volume objects are moved back by that, and meshes of the true surface are moved on.
 """
 
 import math
@@ -10,6 +13,7 @@ import re
 
 import bpy
 import numpy as np
+from mathutils import Matrix, Vector
 
 from .engine import EngineError
 
@@ -40,32 +44,39 @@ def free_path(name, folder=""):
     return path
 
 
-def add_volume(context, name, path, facts, is_y_up=False):
+def add_volume(context, name, path, facts, is_y_up=False, is_aligned=True):
     """A volume object of a .vdb file, selected and active.
 
     facts: its grids; their voxel size, iso-value and volume become properties of the data, bandvox_*.
-    is_y_up: turn the object about x, so that the file's y points up.
+    is_y_up: turn the object about x, so that the file's y points up. is_aligned: move it so that Blender shows it where
+    it is in the file.
     """
+    main = main_grid(path, facts)
     data = bpy.data.volumes.new(name)
     data.filepath = path
     if not data.grids.load():
         message = data.grids.error_message
         bpy.data.volumes.remove(data)
         raise EngineError(f"Blender cannot read '{path}': {message}")
-    main = main_grid(data, facts)
     data["bandvox_grid"] = main.name
-    data["bandvox_voxel_size"] = main.voxel_size
+    data["bandvox_voxel_size"] = min(main.voxel_size)
+    data["bandvox_voxel_sizes"] = main.voxel_size
     data["bandvox_iso"] = main.iso
     data["bandvox_is_level_set"] = main.is_level_set
     data["bandvox_volume"] = main.volume
-    return _add_object(context, name, data, math.pi / 2 if is_y_up else 0)
+    turn = Matrix.Rotation(math.pi / 2 if is_y_up else 0, 4, "X")
+    return _add_object(context, name, data, turn @ _shift_of(data).inverted() if is_aligned else turn)
 
 
-def main_grid(data, facts):
+def _shift_of(data):
+    """By what Blender shows a volume further on than its file says, in the object's own space."""
+    return Matrix.Translation(Vector(data["bandvox_voxel_sizes"]) / 2)
+
+
+def main_grid(path, facts):
     """The grid that materials and surfaces are made of: `density`, else the first one of numbers."""
     if not facts:
-        names = ", ".join(f"'{grid.name}'" for grid in data.grids) or "none"
-        raise EngineError(f"the grids of the file are {names}; expected one of numbers")
+        raise EngineError(f"'{path}' has no grid of floats; expected one, such as 'density'")
     return next((grid for grid in facts if grid.name == "density"), facts[0])
 
 
@@ -135,8 +146,8 @@ def set_look_if_density(volume):
 
 def add_modifier_surface(context, volume, iso):
     """A mesh object that Blender makes of the volume, again whenever it changes; straight between voxels."""
-    surface = _add_object(context, volume.name + " surface", bpy.data.meshes.new(volume.name + " surface"))
-    surface.matrix_world = volume.matrix_world
+    surface = _add_object(context, volume.name + " surface", bpy.data.meshes.new(volume.name + " surface"),
+                          volume.matrix_world)
     modifier = surface.modifiers.new("Band-limited surface", "VOLUME_TO_MESH")
     modifier.object = volume
     modifier.grid_name = volume.data["bandvox_grid"]
@@ -146,7 +157,7 @@ def add_modifier_surface(context, volume, iso):
 
 
 def add_mesh_surface(context, volume, points, triangles):
-    """A mesh object of points (n, 3), in the volume's own space, and triangles (m, 3), shaded smooth."""
+    """A mesh object of points (n, 3), in the file's space, and triangles (m, 3), shaded smooth."""
     mesh = bpy.data.meshes.new(volume.name + " surface")
     mesh.vertices.add(len(points))
     mesh.vertices.foreach_set("co", np.ascontiguousarray(points, np.float32).ravel())
@@ -159,14 +170,13 @@ def add_mesh_surface(context, volume, points, triangles):
         mesh.polygons.foreach_set("loop_total", np.full(len(triangles), 3, np.int32))
     mesh.polygons.foreach_set("use_smooth", np.ones(len(triangles), bool))
     mesh.update(calc_edges=True)
-    surface = _add_object(context, mesh.name, mesh)
-    surface.matrix_world = volume.matrix_world
-    return surface
+    return _add_object(context, mesh.name, mesh, volume.matrix_world @ _shift_of(volume.data))
 
 
-def _add_object(context, name, data, turn=0.0):
+def _add_object(context, name, data, matrix):
+    """A new object there, which alone is selected, and active."""
     result = bpy.data.objects.new(name, data)
-    result.rotation_euler = (turn, 0, 0)
+    result.matrix_world = matrix
     context.collection.objects.link(result)
     for other in context.selected_objects:
         other.select_set(False)
