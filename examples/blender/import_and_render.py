@@ -45,40 +45,39 @@ def import_both(source, folder, resolution, up):
     return volume, surface
 
 
-def corners(things):
-    return [thing.matrix_world @ Vector(corner) for thing in things for corner in thing.bound_box]
-
-
-def add_camera_and_light(things):
-    points = corners(things)
-    low, high = (Vector(pick(point[axis] for point in points) for axis in range(3)) for pick in (min, max))
-    middle, radius = (low + high) / 2, (high - low).length / 2
+def add_camera_and_light(things, size):
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = size
+    scene.render.resolution_percentage = 100
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     toward = Vector((0.25, -1, 0.6)).normalized()
-    camera.location = middle + 2.6 * radius * toward
     camera.rotation_euler = toward.to_track_quat("Z", "Y").to_euler()
-    camera.data.clip_end = 10 * radius
     sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
     sun.data.energy = 3
     sun.rotation_euler = Vector((-0.5, -0.6, 0.9)).to_track_quat("Z", "Y").to_euler()
     for one in (camera, sun):
         bpy.context.collection.objects.link(one)
-    bpy.context.scene.camera = camera
+    scene.camera = camera
+    # As near as everything fits, and a little back.
+    corners = [thing.matrix_world @ Vector(corner) for thing in things for corner in thing.bound_box]
+    place, _ = camera.camera_fit_coords(bpy.context.evaluated_depsgraph_get(),
+                                        [number for corner in corners for number in corner])
+    distance = max((place - corner).length for corner in corners)
+    camera.location = place + 0.02 * distance * toward
+    camera.data.clip_start, camera.data.clip_end = 0.01 * distance, 2 * distance
     world = bpy.data.worlds.new("world")
     world.use_nodes = True
     world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.35, 0.4, 0.45, 1)
-    bpy.context.scene.world = world
+    scene.world = world
 
 
-def render(path, size, samples):
+def render(path, samples):
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.cycles.device = "CPU"
     scene.cycles.samples = samples
     scene.cycles.use_denoising = False
     scene.cycles.volume_bounces = 2
-    scene.render.resolution_x, scene.render.resolution_y = size
-    scene.render.resolution_percentage = 100
     scene.view_settings.view_transform = "Standard"
     scene.render.image_settings.file_format = "PNG"
     scene.render.filepath = path
@@ -92,8 +91,8 @@ def main():
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bandvox_volumes.register()
     things = import_both(source, os.path.dirname(picture), words.resolution, words.up)
-    add_camera_and_light(things)
-    render(picture, words.size, words.samples)
+    add_camera_and_light(things, words.size)
+    render(picture, words.samples)
 
 
 if __name__ == "__main__":

@@ -82,7 +82,9 @@ def sphere():
     volume.matrix_world = mathutils.Matrix.Translation((3, 2, 1)) @ turn @ mathutils.Matrix.Scale(2, 4) @ volume.matrix_world
     found["surface"] = surface_of(volume)
     found["modifier"] = surface_of(volume, method="MODIFIER")
-    found["higher"] = surface_of(volume, own_iso=False, iso=0.9)
+    found["higher"] = surface_of(volume, at="VALUE", iso=0.9)
+    found["whole"] = surface_of(volume, at="VOLUME")
+    found["whole by modifier"] = surface_of(volume, at="VOLUME", method="MODIFIER")
     return found
 
 
@@ -114,6 +116,7 @@ def files():
     found["distances"] = kept(distances)
     found["distances' surface"] = surface_of(distances)
     bpy.context.view_layer.objects.active = distances
+    found["volume of distances"] = error_of(bpy.ops.bandvox.volume_surface, at="VOLUME")
     found["material of distances"] = error_of(bpy.ops.bandvox.volume_material)
     return found
 

@@ -116,6 +116,11 @@ def test_its_surface_is_the_sphere_where_the_object_is(found):
     assert found["sphere"]["higher"]["volume"] == pytest.approx(BALL * higher ** 3, rel=4e-3)
 
 
+def test_a_surface_can_enclose_what_the_source_does(found):
+    for name in ("whole", "whole by modifier"):
+        assert found["sphere"][name]["volume"] == pytest.approx(8 * BALL, rel=6e-3), name
+
+
 def test_materials(found):
     solid, fog = found["sphere"]["solid"], found["sphere"]["fog"]
     assert solid["Density"] == pytest.approx(3 / (2 / 32))
@@ -156,6 +161,7 @@ def test_volumes_of_other_programs(found):
     distances = files["distances"]
     assert distances["bandvox_is_level_set"] and distances["bandvox_iso"] == 0 and distances["materials"] == 0
     assert files["distances' surface"]["volume"] == pytest.approx(BALL * radius_of(1, 2 / 24) ** 3, rel=8e-3)
+    assert "expected" in files["volume of distances"]
     assert "holds distances; expected a density" in files["material of distances"]
 
 

@@ -102,19 +102,36 @@ class Engine:
         return [_facts_of(grid["name"], grid["class"], grid["voxel_size"], grid.get("bandvox", {}).get)
                 for grid in grids if grid["value_type"] == "float"]
 
+    def iso_of_volume(self, path, grid):
+        """The value of a density whose surface encloses as much as the solid that the density was made of."""
+        if self.package:
+            with self._package_at_work() as bandvox:
+                density = self._grid(path, grid)
+                volume = density.metadata.get("bandvox_source_volume")
+                if volume is None:
+                    raise EngineError(f"'{path}' does not say what volume its source has; expected a density by Bandvox")
+                return bandvox.iso_of_volume(density, volume, progress=self._told)[0]
+        with tempfile.TemporaryDirectory() as folder:
+            target = os.path.join(folder, "same.vdb")
+            self._run(["convert", path, "--grid", grid, "--iso", "volume", "--output", target])
+            return self.facts(target)[0].iso
+
     def surface(self, path, grid, iso):
         """Points (n, 3) and triangles (m, 3) of the surface where a grid of a .vdb file has the value iso."""
         if self.package:
             with self._package_at_work() as bandvox:
-                found = [one for one in bandvox.read_vdb(path) if one.name == grid]
-                if not found:
-                    raise EngineError(f"'{path}' has no grid '{grid}'; expected one that it has")
-                mesh = bandvox.to_mesh(found[0], iso=iso, progress=self._told)
+                mesh = bandvox.to_mesh(self._grid(path, grid), iso=iso, progress=self._told)
                 return mesh.points, mesh.triangles
         with tempfile.TemporaryDirectory() as folder:
             target = os.path.join(folder, "surface.ply")
             self._run(["convert", path, "--grid", grid, "--iso", repr(iso), "--output", target])
             return ply.read(target)
+
+    def _grid(self, path, name):
+        found = [grid for grid in self.package.read_vdb(path) if grid.name == name]
+        if not found:
+            raise EngineError(f"'{path}' has no grid '{name}'; expected one that it has")
+        return found[0]
 
     def _told(self, stage, fraction):
         if fraction is not None:

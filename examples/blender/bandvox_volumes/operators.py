@@ -55,6 +55,11 @@ class Reporting:
         return {"FINISHED"}
 
 
+def _as_typed(number):
+    """What Blender keeps as a float of 32 bits, without the digits that this has made up."""
+    return float(f"{number:.6g}")
+
+
 class LatticeSettings:
     size: EnumProperty(
         name="Size by",
@@ -78,8 +83,8 @@ class LatticeSettings:
                     "as long as that is not saved")
 
     def lattice(self):
-        voxel_size = self.voxel_size if self.size == "VOXEL_SIZE" else 0.0
-        return Lattice(self.resolution, voxel_size, self.cutoff, self.order)
+        voxel_size = _as_typed(self.voxel_size) if self.size == "VOXEL_SIZE" else 0.0
+        return Lattice(self.resolution, voxel_size, _as_typed(self.cutoff), _as_typed(self.order))
 
     def draw_lattice(self, layout):
         layout.use_property_split = True
@@ -213,17 +218,23 @@ class BANDVOX_OT_surface(VolumeOperator, bpy.types.Operator):
     method: EnumProperty(
         name="Method", items=[("BANDVOX", "Bandvox", "On the band-limited density itself; made once"),
                               ("MODIFIER", "Modifier", "By Blender, which follows the volume; less exact")])
-    own_iso: BoolProperty(name="The volume's own iso", default=True, description="As its file says, mostly 0.5")
-    iso: FloatProperty(name="Iso", default=0.5, description="The value that is the surface")
+    at: EnumProperty(
+        name="At", items=[("OWN", "The volume's own iso", "As its file says, mostly 0.5"),
+                          ("VOLUME", "The source's volume", "The value whose surface encloses what the source does"),
+                          ("VALUE", "A value", "As below")])
+    iso: FloatProperty(name="Iso", default=0.5, description="The value that is the surface, if it is chosen here")
 
     def work(self, context, engine):
         volume = context.object
         data = volume.data
-        iso = data["bandvox_iso"] if self.own_iso else self.iso
+        path, grid = bpy.path.abspath(data.filepath), data["bandvox_grid"]
+        iso = {"OWN": data["bandvox_iso"], "VALUE": _as_typed(self.iso)}.get(self.at)
+        if iso is None:
+            iso = engine.iso_of_volume(path, grid)
         if self.method == "MODIFIER":
             surface = scene.add_modifier_surface(context, volume, iso)
             return f"'{surface.name}' at {iso:.4g}"
-        points, triangles = engine.surface(bpy.path.abspath(data.filepath), data["bandvox_grid"], iso)
+        points, triangles = engine.surface(path, grid, iso)
         surface = scene.add_mesh_surface(context, volume, points, triangles)
         return f"'{surface.name}' at {iso:.4g}: {len(triangles)} triangles"
 
