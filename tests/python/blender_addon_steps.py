@@ -91,6 +91,7 @@ def sphere():
 def by_voxel_size():
     volume = import_file(FOLDER / "cube.obj", size="VOXEL_SIZE", voxel_size=0.125, order=4, cutoff=0.25, up="Y")
     again = import_file(FOLDER / "cube.obj", resolution=16)
+    import_file(FOLDER / "open.obj", resolution=16)
     return {"kept": kept(volume), "again": kept(again), "surface": surface_of(volume)}
 
 
@@ -193,7 +194,8 @@ def picture():
 
 
 found = {"operators": set_up(), "sphere": sphere(), "voxel size": by_voxel_size(), "mesh": mesh_object(),
-         "files": files(), "errors": errors(), "picture": picture(), "from above": seen_from_above(), "command's": volumes_on_new_voxels()}
+         "files": files(), "errors": errors(), "picture": picture(), "from above": seen_from_above(),
+         "command's": volumes_on_new_voxels()}
 bpy.ops.preferences.addon_disable(module="bandvox_volumes")
 found["after"] = hasattr(bpy.types, "BANDVOX_OT_import")
 pathlib.Path(RESULT).write_text(json.dumps(found))

@@ -52,6 +52,7 @@ def run_blender(folder, *words):
 
 def write_files(folder):
     (folder / "cube.obj").write_text(CUBE)
+    (folder / "open.obj").write_text(CUBE.replace("f 5 6 7 8\n", ""))
     (folder / "junk.obj").write_text("nothing\n")
     (folder / "junk.vdb").write_text("nothing\n")
     (folder / "points.csv").write_text("x,y,z,radius\n0,0,0,0.5\n0.4,0,0,0.5\n")
@@ -76,7 +77,7 @@ def found(request, tmp_path_factory):
     steps = run_blender(folder, ROOT / "tests" / "python" / "blender_addon_steps.py", "--", archive,
                         "package" if request.param == "package" else COMMAND, folder, folder / "found.json")
     assert steps.returncode == 0, steps.stdout + steps.stderr
-    return json.loads((folder / "found.json").read_text())
+    return {**json.loads((folder / "found.json").read_text()), "said": steps.stdout}
 
 
 def test_comes_and_goes(found):
@@ -176,6 +177,11 @@ def test_volumes_and_points_on_new_voxels(found):
     lens = math.pi * (4 * 0.5 + 0.4) * (2 * 0.5 - 0.4) ** 2 / 12
     assert new["points"]["bandvox_volume"] == pytest.approx(2 * BALL / 8 - lens, rel=1e-2)
     assert new["coarse"]["bandvox_voxel_size"] == pytest.approx(0.2)
+
+
+def test_warnings_are_passed_on(found):
+    [warning] = [line for line in found["said"].splitlines() if line.startswith("Warning: ") and "hole" in line]
+    assert "capped" in warning
 
 
 def test_errors_say_what_was_expected(found):

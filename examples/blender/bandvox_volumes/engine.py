@@ -125,7 +125,10 @@ class Engine:
         with tempfile.TemporaryDirectory() as folder:
             target = os.path.join(folder, "surface.ply")
             self._run(["convert", path, "--grid", grid, "--iso", repr(iso), "--output", target])
-            return ply.read(target)
+            try:
+                return ply.read(target)
+            except ValueError as error:
+                raise EngineError(str(error)) from error
 
     def _grid(self, path, name):
         found = [grid for grid in self.package.read_vdb(path) if grid.name == name]
@@ -156,7 +159,11 @@ class Engine:
         with tempfile.TemporaryFile("w+", encoding="utf-8") as printed:
             with subprocess.Popen([self.command, *words, "--progress", "always"], stdin=subprocess.DEVNULL, text=True,
                                   stdout=printed, stderr=subprocess.PIPE, encoding="utf-8", errors="replace") as process:
-                errors = self._listen(process.stderr)
+                try:
+                    errors = self._listen(process.stderr)
+                except BaseException:  # Ctrl-C too: nobody waits for the result any more
+                    process.terminate()
+                    raise
             if process.returncode != 0:
                 raise EngineError(errors or f"bandvox {words[0]} has ended with status {process.returncode}")
             printed.seek(0)
