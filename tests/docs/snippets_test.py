@@ -48,6 +48,7 @@ PAGES = {
     "docs/solids-of-volumes.md": (
         ["scan.nrrd", "scan.npy", "cloud.vdb", "old_sdf.vdb", "bunny.obj", "bunny.vdb"],
         "bone.vdb soft.vdb cloud.ply density.vdb distances.vdb fog.vdb small.ply"),
+    "docs/vfx.md": (["examples", "bunny.obj"], "bandvox_volumes.zip bunny.vdb bunny.exr asset.usda asset.vdb"),
 }
 # What the standard error of all blocks of a page has so many times.
 SAID = {"docs/farm.md": {"skipped  vol.000": 3, "redo     vol.000": 3, "resolution was 48, is 40": 3}}
