@@ -174,6 +174,17 @@ TEST(Outline, DrawsVolumesMeshesAndShapes) {
     EXPECT_NE(readText(folder / "mixed.pdf").find("isophote"), std::string::npos);
 }
 
+TEST(Outline, SaysThatAFolderIsNoFile) {
+    const TemporaryFolder folder;
+    for (const char* const name : {"patches.bpt", "patches.obj"}) {
+        std::filesystem::create_directory(folder / name);
+        const RunResult result =
+            runBandvox({"outline", name, "-o", "out.svg"}, {.folder = folder.path()});
+        EXPECT_EQ(result.status, 3) << result.err;
+        EXPECT_NE(result.err.find("folder"), std::string::npos) << result.err;
+    }
+}
+
 TEST(Outline, FillsWhatIsBetweenLines) {
     const TemporaryFolder folder;
     const auto run = [&](const Names& words) {

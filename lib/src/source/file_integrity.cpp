@@ -8,7 +8,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <system_error>
 
 namespace bandvox {
 
@@ -21,11 +24,21 @@ void FileContents::fail(const std::string& what) const {
 
 FileContents readFile(const std::filesystem::path& path) {
     FileContents file{path, {}};
-    std::ifstream stream(path, std::ios::binary | std::ios::ate);
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) file.fail("is a folder; expected a file");
+    std::ifstream stream(path, std::ios::binary);
     if (!stream) file.fail(std::string("cannot be opened: ") + std::strerror(errno));
-    file.bytes.resize(static_cast<std::size_t>(stream.tellg()));
-    stream.seekg(0);
-    stream.read(file.bytes.data(), static_cast<std::streamsize>(file.bytes.size()));
+    stream.seekg(0, std::ios::end);
+    const std::streamoff size = stream.tellg();
+    if (size >= 0) {
+        file.bytes.resize(static_cast<std::size_t>(size));
+        stream.seekg(0);
+        stream.read(file.bytes.data(), size);
+    } else {
+        // What has no end to go to, a pipe, is read as it comes.
+        stream.clear();
+        file.bytes.assign(std::istreambuf_iterator<char>(stream), {});
+    }
     if (!stream) file.fail(std::string("cannot be read: ") + std::strerror(errno));
     return file;
 }

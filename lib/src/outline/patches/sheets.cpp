@@ -15,6 +15,10 @@ namespace {
 constexpr int kDepthOfParts = 4;  // to which patches are cut in advance
 // Of a patch, that is cut no more: it moves a fold by the square of that.
 constexpr double kSmallest = 1.0 / 131072;
+// Beside a fold few parts are as small as this. But all along a side that is a point each of them
+// holds it: then they are not worth to be cut further.
+constexpr double kSmall = 1.0 / 8192;
+constexpr int kMostSmallCuts = 256;
 constexpr double kLargestBend = 0.4;  // of derivatives, relative to the mean
 constexpr double kBeside = 1e-10;     // parameters that differ by rounding
 
@@ -125,6 +129,7 @@ struct Sheets::Sight {
     double x, y, z;  // what is farther does not count
     double sameDepth = 0;
     std::vector<Place> met{};
+    int smallCuts = 0;
 
     // Parts reach beyond their borders by rounding: a place on a border of parts, or of patches,
     // is found more than once, and counts once.
@@ -216,6 +221,7 @@ std::size_t Sheets::row(double y) const {
 
 void Sheets::meetCut(const Part& part, Sight& sight) const {
     if (part.size < kSmallest) return;
+    if (part.size <= kSmall && ++sight.smallCuts > kMostSmallCuts) return;
     visitQuarters(
         part, mPatches[static_cast<std::size_t>(part.patch)],
         [&](const Part& p) { return sight.mayMeet(p); },
