@@ -200,12 +200,6 @@ std::vector<double> readCosines(const CommandLine& line, const std::string& opti
         .value_or(fallback);
 }
 
-bool isHexColor(std::string_view color) {
-    return (color.size() == 4 || color.size() == 7) && color[0] == '#' &&
-           std::all_of(color.begin() + 1, color.end(),
-                       [](unsigned char c) { return std::isxdigit(c) != 0; });
-}
-
 void readFill(const CommandLine& line, OutlineRequest& request) {
     OutlineOptions& options = request.options;
     options.fill = static_cast<OutlineFillKind>(line.choice("fill", 0));
@@ -219,16 +213,14 @@ void readFill(const CommandLine& line, OutlineRequest& request) {
     needsFill("shade", isToon, "toon");
     needsFill("fill-colors", options.fill != OutlineFillKind::None, "flat or toon");
     options.tones = readCosines(line, "tones", options.tones);
-    if (!std::is_sorted(options.tones.begin(), options.tones.end(), std::less_equal<>())) {
+    const auto& tones = options.tones;
+    if (std::adjacent_find(tones.begin(), tones.end(), std::greater_equal<>()) != tones.end()) {
         line.fail("tones", "ascending cosines between -1 and 1, as in 0.25,0.7");
     }
     request.stroke.shade = line.number("shade", {.low = 0, .high = 1}, request.stroke.shade);
     if (const auto colors = line.text("fill-colors")) {
         request.stroke.fillColors.clear();
         for (const std::string_view color : split(*colors, ',')) {
-            if (!isHexColor(color)) {
-                line.fail("fill-colors", "colours as #rgb or #rrggbb, with commas between");
-            }
             request.stroke.fillColors.emplace_back(color);
         }
     }
@@ -262,6 +254,7 @@ OutlineRequest parseOutline(const CommandLine& line) {
     request.stroke.color = readStyle(line, "stroke-color", request.stroke.color);
     request.stroke.hiddenColor = readStyle(line, "hidden-color", request.stroke.hiddenColor);
     request.stroke.dash = readStyle(line, "dash", request.stroke.dash);
+    requireValid(request.stroke);
     return request;
 }
 

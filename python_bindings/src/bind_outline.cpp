@@ -110,22 +110,7 @@ StrokeOptions checked(const StrokeOptions& stroke) {
     requireStyle(stroke.color, "stroke_color");
     requireStyle(stroke.hiddenColor, "hidden_color");
     requireStyle(stroke.dash, "dash");
-    if (!(stroke.shade >= 0 && stroke.shade <= 1)) {
-        throw Error(ErrorKind::Usage,
-                    "shade is " + std::to_string(stroke.shade) + "; expected 0 to 1");
-    }
-    if (stroke.fillColors.empty()) {
-        throw Error(ErrorKind::Usage, "fill_colors are none; expected one at least");
-    }
-    for (const std::string& color : stroke.fillColors) {
-        const bool isColor =
-            (color.size() == 4 || color.size() == 7) && color[0] == '#' &&
-            color.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
-        if (!isColor) {
-            throw Error(ErrorKind::Usage,
-                        "a fill colour is '" + color + "'; expected #rgb or #rrggbb");
-        }
-    }
+    requireValid(stroke);
     return stroke;
 }
 

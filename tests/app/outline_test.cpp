@@ -220,7 +220,8 @@ TEST(Outline, FillsWhatIsBetweenLines) {
          {Names{"--fill", "plaid"}, Names{"--fill-colors", "#123"}, Names{"--tones", "0.5"},
           Names{"--fill", "toon", "--tones", "0.5,0.2"}, Names{"--fill", "flat", "--shade", "0.5"},
           Names{"--fill", "flat", "--fill-colors", "red"},
-          Names{"--fill", "flat", "--fill-colors", "#123,"}}) {
+          Names{"--fill", "flat", "--fill-colors", "#123,"}, Names{"--dash", "-1,2"},
+          Names{"--tolerance", "1e-12"}}) {
         Names all{"outline", kTeapotFile, "-o", "wrong.svg"};
         all.insert(all.end(), words.begin(), words.end());
         EXPECT_EQ(run(all).status, 2) << words.back();

@@ -17,12 +17,7 @@ namespace {
 
 TEST(Isophotes, OfASphereAreCirclesAroundTheLight) {
     const PatchModel ball{sphere(1), {"sphere"}, {}};
-    OutlineOptions options;
-    options.camera.projection = CameraOptions::Projection::Orthographic;
-    options.camera.from = openvdb::Vec3d(0.3, 0.7, 0.4);
-    options.camera.frame = 2.5;
-    options.camera.lookat = openvdb::Vec3d(0.0);
-    options.width = options.height = 220;
+    OutlineOptions options = parallelView(openvdb::Vec3d(0.3, 0.7, 0.4), 2.5);
     options.isophotes = {-0.2, 0, 0.6, 0.95};
     const openvdb::Vec3d light = options.light.unit();
     const Outline outline = patchesToOutline(ball, options);

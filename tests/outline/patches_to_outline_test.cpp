@@ -16,18 +16,6 @@
 namespace bandvox::outline_test {
 namespace {
 
-OutlineOptions parallelView(const openvdb::Vec3d& from, double frame) {
-    OutlineOptions options;
-    options.camera.projection = CameraOptions::Projection::Orthographic;
-    options.camera.from = from;
-    options.camera.frame = frame;
-    options.camera.lookat = openvdb::Vec3d(0.0);
-    options.camera.up = openvdb::Vec3d(0, 0, 1);
-    options.width = options.height = 220;
-    options.margin = 10;
-    return options;
-}
-
 TEST(PatchesToOutline, DrawsASphereAsACircleOfFewCubics) {
     // 200 units of the page are 2.5 of the world.
     const PatchModel model{sphere(1), {"sphere"}, {}};
@@ -185,6 +173,74 @@ TEST(PatchesToOutline, EndsQuicklyWithAThousandPatchesOnAPoint) {
     patch.control.assign(16, {0.1, 0.2, 0.3, 1});
     model.patches.assign(1000, patch);
     EXPECT_THROW(patchesToOutline(model, parallelView({1, 0.2, 0.3}, 4)), Error);
+}
+
+// A quarter of a cylinder's wall around z, from z = 0 up.
+BezierPatch quarterWall(double radius, int quarter) {
+    BezierPatch patch{.degreeU = 2, .degreeV = 1};
+    for (const auto& c : quarterCircle()) {
+        const auto p = turned(c, quarter);
+        for (const double z : {0.0, 1.0}) {
+            patch.control.push_back({radius * p[0], radius * p[1], z * p[2], p[2]});
+        }
+    }
+    patch.object = 1;
+    return patch;
+}
+
+BezierPatch square(double half, double z) {
+    BezierPatch patch{.degreeU = 1, .degreeV = 1};
+    for (const double x : {-half, half}) {
+        for (const double y : {-half, half}) patch.control.push_back({x, y, z, 1});
+    }
+    return patch;
+}
+
+TEST(PatchesToOutline, DrawsTheFootOfWhatStandsOnAPlaneOnce) {
+    // The wall's border lies in the plane: a circle of radius 0.5.
+    PatchModel model{{square(1, 0)}, {"plane", "wall"}, {}};
+    for (int q = 0; q < 4; ++q) model.patches.push_back(quarterWall(0.5, q));
+    for (const double tolerance : {0.1, 0.02, 0.01, 0.005, 0.001}) {
+        OutlineOptions options = parallelView(openvdb::Vec3d(1, -2, 1), 3);
+        options.tolerance = tolerance;
+        const Outline outline = patchesToOutline(model, options);
+        const Camera camera(options.camera, 100, 100,
+                            openvdb::BBoxd(openvdb::Vec3d(-1.0), openvdb::Vec3d(1.0)));
+        const openvdb::Vec3d right = camera.right(), up = camera.upward();
+        const double area = right[0] * up[1] - right[1] * up[0];
+        double length = 0;
+        for (const OutlinePath& path : outline.paths) {
+            if (path.kind != OutlineKind::Intersection) continue;
+            std::array<double, 2> before{HUGE_VAL, 0};
+            alongPath(path, 50, [&](const Place& p) {
+                // The place of the plane z = 0 that is seen there.
+                const double x = (p[0] - 110) * 3 / 200, y = (110 - p[1]) * 3 / 200;
+                const std::array<double, 2> w{(x * up[1] - y * right[1]) / area,
+                                              (y * right[0] - x * up[0]) / area};
+                EXPECT_NEAR(std::hypot(w[0], w[1]), 0.5, 0.05 * tolerance + 1e-6);
+                if (before[0] < HUGE_VAL) length += std::hypot(w[0] - before[0], w[1] - before[1]);
+                before = w;
+            });
+        }
+        EXPECT_NEAR(length, std::numbers::pi, 0.02) << tolerance;
+        EXPECT_LT(outline.paths.size(), 20U) << tolerance;
+    }
+}
+
+TEST(PatchesToOutline, DrawsNoIntersectionWhereSolidsTouch) {
+    // A ball and a torus that lie on a plane, and a box's face in another one's.
+    const auto raised = [](std::vector<BezierPatch> patches, double by) {
+        return mapped(std::move(patches), {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, by}}});
+    };
+    for (const auto& standing : {raised(sphere(0.5), 0.5), raised(torus(0.6, 0.25), 0.25),
+                                 std::vector<BezierPatch>{square(0.5, 0)}}) {
+        const PatchModel model{together({square(1, 0)}, standing), {"plane", "solid"}, {}};
+        const Outline outline = patchesToOutline(model, parallelView(openvdb::Vec3d(1, -2, 1), 3));
+        for (const OutlinePath& path : outline.paths) {
+            EXPECT_NE(path.kind, OutlineKind::Intersection);
+        }
+        EXPECT_LT(outline.paths.size(), 20U);
+    }
 }
 
 }  // namespace

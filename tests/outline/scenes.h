@@ -89,4 +89,17 @@ inline OutlineOptions viewFrom(double azimuth, double elevation, bool isPerspect
     return options;
 }
 
+/// A view along parallel lines of sight whose 200 of 220 page units are `frame` world units.
+inline OutlineOptions parallelView(const openvdb::Vec3d& from, double frame) {
+    OutlineOptions options;
+    options.camera.projection = CameraOptions::Projection::Orthographic;
+    options.camera.from = from;
+    options.camera.frame = frame;
+    options.camera.lookat = openvdb::Vec3d(0.0);
+    options.camera.up = openvdb::Vec3d(0, 0, 1);
+    options.width = options.height = 220;
+    options.margin = 10;
+    return options;
+}
+
 }  // namespace bandvox::outline_test

@@ -29,13 +29,7 @@ double areaOf(const OutlineFill& fill) {
 }
 
 OutlineOptions filledView(const openvdb::Vec3d& from, double frame, OutlineFillKind fill) {
-    OutlineOptions options;
-    options.camera.projection = CameraOptions::Projection::Orthographic;
-    options.camera.from = from;
-    options.camera.frame = frame;
-    options.camera.lookat = openvdb::Vec3d(0.0);
-    options.camera.up = openvdb::Vec3d(0, 0, 1);
-    options.width = options.height = 220;
+    OutlineOptions options = parallelView(from, frame);
     options.fill = fill;
     return options;
 }
@@ -175,6 +169,15 @@ TEST(SeenRegions, HaveTheTonesOfASphere) {
     EXPECT_GT(looked, 15000);
     // What only tells tones apart is not drawn.
     for (const OutlinePath& path : outline.paths) EXPECT_EQ(path.kind, OutlineKind::Contour);
+}
+
+TEST(SeenRegions, ShowTheFirstOfObjectsInTheSamePlace) {
+    PatchModel twice{together(torus(1, 0.3), torus(1, 0.3)), {"first", "second"}, {}};
+    for (const openvdb::Vec3d& from : {openvdb::Vec3d(0.3, 0.7, 0.4), openvdb::Vec3d(0, 0.1, 1)}) {
+        const Outline outline = patchesToOutline(twice, filledView(from, 3, OutlineFillKind::Flat));
+        ASSERT_EQ(outline.fills.size(), 1U);
+        EXPECT_EQ(outline.fills[0].object, 0);
+    }
 }
 
 TEST(SeenRegions, ShareTheirBordersToTheLastDigit) {

@@ -19,7 +19,8 @@ struct OutlineOptions {
     CameraOptions camera;
     double width = 200, height = 150;  ///< of the page, in any unit; > 0
     double margin = 10;                ///< of the page that stays free, if the view is fitted
-    double tolerance = 0.01;           ///< distance of lines from the true ones, page units; > 0
+    /// Distance of lines from the true ones, page units; a billionth of the longer side or more.
+    double tolerance = 0.01;
     double creaseAngle = 5;     ///< least angle between normals of a crease, degrees, 0 to 180
     bool intersections = true;  ///< draw where surfaces pass through each other
     bool hidden = true;         ///< keep lines that are behind something

@@ -21,19 +21,23 @@ struct StrokeOptions {
     double shade = 0.45;  ///< of the darkest tone, a part of that colour, 0 to 1
 };
 
+/// Throws Error(ErrorKind::Usage) for widths, a dash or a shade out of range, and for fill colours
+/// that are none. Colours of lines may be words of CSS, for SVG.
+void requireValid(const StrokeOptions& options);
+
 /// Writes a drawing as SVG: width and height in millimetres, with a matching viewBox. Each object
 /// is a group of layers, one for each kind of line that it has, visible and hidden ones apart, with
 /// a class for style sheets; ids do not depend on anything but the drawing. Lines are paths of
 /// cubic curves, and nothing is clipped.
 ///
-/// Throws Error(ErrorKind::Runtime) if it cannot be written.
+/// Throws as requireValid, Error(ErrorKind::Runtime) if it cannot be written.
 void writeSvg(AtomicFile& file, const Outline& outline, const StrokeOptions& options = {});
 
 /// Writes a drawing as PDF 1.7, a page unit a millimetre, with a layer (optional content) for each
 /// object and kind of line, visible and hidden ones apart. Colours are "#rgb" or "#rrggbb".
 ///
-/// Throws Error(ErrorKind::Usage) for other colours, and for dashes that are no lengths,
-/// Error(ErrorKind::Runtime) if it cannot be written.
+/// Throws as requireValid, Error(ErrorKind::Usage) for other colours, Error(ErrorKind::Runtime) if
+/// it cannot be written.
 void writePdf(AtomicFile& file, const Outline& outline, const StrokeOptions& options = {});
 
 /// The same as Encapsulated PostScript, which has no layers.

@@ -58,8 +58,11 @@ void requireValid(const OutlineOptions& options) {
     if (!(options.margin >= 0 && options.margin < 0.5 * side)) {
         refuseOption("margin", options.margin, "0 or more, and below half of the page");
     }
-    if (!(options.tolerance > 0) || !std::isfinite(options.tolerance)) {
-        refuseOption("tolerance", options.tolerance, "above 0");
+    constexpr double kLeastTolerance = 1e-9;  // of the page: curves are not known better
+    const double least = kLeastTolerance * std::max(options.width, options.height);
+    if (!(options.tolerance >= least) || !std::isfinite(options.tolerance)) {
+        refuseOption("tolerance", options.tolerance,
+                     "a billionth of the page's longer side or more");
     }
     if (!(options.creaseAngle >= 0 && options.creaseAngle <= 180)) {
         refuseOption("crease angle", options.creaseAngle, "0 to 180 degrees");

@@ -19,6 +19,23 @@ std::string PaintLayer::kindName() const {
     return kNames[static_cast<std::size_t>(kind)];
 }
 
+void requireValid(const StrokeOptions& options) {
+    for (const double width : {options.width, options.hiddenWidth}) {
+        if (width > 0 && std::isfinite(width)) continue;
+        throw Error(ErrorKind::Usage,
+                    "a line's width is " + std::to_string(width) + "; expected one above 0");
+    }
+    parsedDash(options.dash);
+    if (!(options.shade >= 0 && options.shade <= 1)) {
+        throw Error(ErrorKind::Usage, "the shade of the darkest tone is " +
+                                          std::to_string(options.shade) + "; expected 0 to 1");
+    }
+    if (options.fillColors.empty()) {
+        throw Error(ErrorKind::Usage, "there are no colours to fill with; expected one at least");
+    }
+    for (const std::string& color : options.fillColors) parsedColor(color);
+}
+
 std::string objectName(const Outline& outline, int object) {
     const auto index = static_cast<std::size_t>(object);
     if (index < outline.objects.size()) return outline.objects[index];
@@ -41,13 +58,6 @@ std::vector<PaintLayer> paintLayers(const Outline& outline) {
 }
 
 std::vector<FillLayer> fillLayers(const Outline& outline, const StrokeOptions& options) {
-    if (!(options.shade >= 0 && options.shade <= 1)) {
-        throw Error(ErrorKind::Usage, "the shade of the darkest tone is " +
-                                          std::to_string(options.shade) + "; expected 0 to 1");
-    }
-    if (options.fillColors.empty()) {
-        throw Error(ErrorKind::Usage, "there are no colours to fill with; expected one at least");
-    }
     std::map<int, FillLayer> sorted;
     for (const OutlineFill& fill : outline.fills) {
         FillLayer& layer = sorted[fill.object];
@@ -104,8 +114,8 @@ std::array<double, 3> parsedColor(const std::string& color) {
         result[c] = value / (digits == 1 ? 15.0 : 255.0);
     }
     if (isColor) return result;
-    throw Error(ErrorKind::Usage, "the colour is \"" + color +
-                                      "\"; expected one as #000000 or #000 for this kind of file");
+    throw Error(ErrorKind::Usage,
+                "the colour is \"" + color + "\"; expected one as #000000 or #000");
 }
 
 std::vector<double> parsedDash(const std::string& dash) {
@@ -126,8 +136,7 @@ std::vector<double> parsedDash(const std::string& dash) {
     }
     const bool isSome = std::any_of(lengths.begin(), lengths.end(), [](double l) { return l > 0; });
     if (isDash && isSome) return lengths;
-    throw Error(ErrorKind::Usage, "the dash is \"" + dash +
-                                      "\"; expected lengths as \"1.2 0.8\" for this kind of file");
+    throw Error(ErrorKind::Usage, "the dash is \"" + dash + "\"; expected lengths as \"1.2 0.8\"");
 }
 
 void writeWhole(AtomicFile& file, const std::string& text) {

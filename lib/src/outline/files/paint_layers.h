@@ -31,8 +31,7 @@ struct FillLayer {
     std::vector<std::array<double, 3>> colors;  ///< by tone; red, green and blue, 0 to 1
 };
 
-/// The fills of a drawing, object by object. They refer to the drawing. Throws
-/// Error(ErrorKind::Usage) for a colour or a shade that is none.
+/// The fills of a drawing, object by object. They refer to the drawing.
 std::vector<FillLayer> fillLayers(const Outline& outline, const StrokeOptions& options);
 
 /// The width of a fill's own line, page units: neighbours that only touch would let the paper

@@ -143,6 +143,7 @@ std::string reference(std::size_t object) {
 }  // namespace
 
 void writePdf(AtomicFile& file, const Outline& outline, const StrokeOptions& options) {
+    requireValid(options);
     PdfObjects objects;
     const std::string scale = plainNumber(kPointsPerUnit);
     std::string content = "q 1 J 1 j " + scale;
@@ -195,6 +196,7 @@ void writePdf(AtomicFile& file, const Outline& outline, const StrokeOptions& opt
 }
 
 void writeEps(AtomicFile& file, const Outline& outline, const StrokeOptions& options) {
+    requireValid(options);
     const double width = outline.width * kPointsPerUnit, height = outline.height * kPointsPerUnit;
     std::string text = "%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 ";
     text += std::to_string(static_cast<long>(width) + 1) + " ";

@@ -125,6 +125,7 @@ void appendSvgLayer(std::string& text, const PaintLayer& layer) {
 }  // namespace
 
 void writeSvg(AtomicFile& file, const Outline& outline, const StrokeOptions& options) {
+    requireValid(options);
     std::string text = svgHeader(outline, options);
     appendSvgFills(text, outline, options);
     int object = -1;

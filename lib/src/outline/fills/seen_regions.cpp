@@ -54,9 +54,10 @@ class RegionTracer {
         }
     }
 
-    std::vector<OutlineFill> trace(double tolerance) {
+    std::vector<OutlineFill> trace(double tolerance, Progress& progress) {
         findBorders();
         parallelFor(static_cast<std::int64_t>(mBorders.size()), [&](std::int64_t k) {
+            progress.throwIfInterrupted();
             RegionBorder& border = mBorders[static_cast<std::size_t>(k)];
             const Curve curve = curveAlong(border);
             // What nobody can see would only be a path that stands still.
@@ -257,11 +258,12 @@ std::vector<OutlineFill> seenRegions(std::span<const VisiblePiece> pieces, const
     }
     std::vector<PlanarChain> chains(curves.size());
     std::transform(curves.begin(), curves.end(), chains.begin(), chainOf);
+    progress.throwIfInterrupted();
     const PlanarMap map = planarMap(chains);
     std::vector<double> tones;
     if (options.fill == OutlineFillKind::Toon) tones = options.tones;
     const std::vector<FaceLabel> labels = faceLabels(map, scene, tones, progress);
-    return RegionTracer(map, labels, curves).trace(options.tolerance);
+    return RegionTracer(map, labels, curves).trace(options.tolerance, progress);
 }
 
 }  // namespace bandvox

@@ -9,8 +9,9 @@
 namespace bandvox {
 
 /// Joins the ends of lines that are seen to what they end on, so that no gap is left between:
-/// ends that are nearer to each other than the curves' flatness get one place, and a line that
-/// passes there gets a point there. What is farther than that, by up to half a pixel, is bridged.
+/// ends that are nearer to each other than twice the curves' flatness get one place, and a line
+/// that passes there gets a point there. What is farther than that, by up to 5e-4 of the page, is
+/// bridged.
 std::vector<Curve> weldedCurves(std::span<const VisiblePiece> pieces, const CurveScene& scene,
                                 const CurveSampling& sampling);
 

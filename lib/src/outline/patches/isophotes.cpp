@@ -2,6 +2,7 @@
 
 #include "outline/patches/bernstein.h"
 #include "outline/patches/fold_curves.h"
+#include "outline/patches/onto_zero.h"
 
 #include <algorithm>
 #include <array>
@@ -135,16 +136,10 @@ CurvePoint isophoteBetween(const LitPatches& lit, const CurvePoint& a, const Cur
     point.u = a.u + share * (b.u - a.u);
     point.v = a.v + share * (b.v - a.v);
     const auto k = static_cast<std::size_t>(a.patch);
-    for (int step = 0; step < 8; ++step) {
-        const Gradient2 f = isophoteAt(lit.patches[k], lit.light, a.t, point.u, point.v);
-        const double square = f.du * f.du + f.dv * f.dv;
-        if (!(square > 0)) break;
-        const double du = -f.value * f.du / square, dv = -f.value * f.dv / square;
-        point.u = std::clamp(point.u + du, 0.0, 1.0);
-        point.v = std::clamp(point.v + dv, 0.0, 1.0);
-        // Each step squares the error.
-        if (std::max(std::abs(du), std::abs(dv)) < 1e-9) break;
-    }
+    const bool isThere = ontoZero(
+        [&](double u, double v) { return isophoteAt(lit.patches[k], lit.light, a.t, u, v); },
+        point.u, point.v);
+    if (!isThere) return share < 0.5 ? a : b;
     const ViewPoint p = lit.seen[k].at(point.u, point.v);
     point.x = p.x;
     point.y = p.y;

@@ -127,7 +127,7 @@ bool MeetingMarch::isProper(const MeetingPlace& p) const {
     const double sine =
         std::hypot(n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2], n[0] * m[1] - n[1] * m[0]);
     // Surfaces that touch do not pass through each other.
-    constexpr double kLeastAngle = 1e-7;
+    constexpr double kLeastAngle = 1e-5;
     return sine > kLeastAngle;
 }
 

@@ -1,5 +1,7 @@
 #include "outline/patches/refine_point.h"
 
+#include "outline/patches/onto_zero.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,20 +27,6 @@ void place(const ViewPatch& patch, CurvePoint& point, double dx, double dy) {
     }
 }
 
-// Onto F = 0, along its gradient.
-void ontoFold(const ViewPatch& patch, CurvePoint& point) {
-    for (int step = 0; step < 8; ++step) {
-        const Gradient2 f = evaluate(patch.f, point.u, point.v);
-        const double square = f.du * f.du + f.dv * f.dv;
-        if (!(square > 0)) return;
-        const double du = -f.value * f.du / square, dv = -f.value * f.dv / square;
-        point.u = std::clamp(point.u + du, 0.0, 1.0);
-        point.v = std::clamp(point.v + dv, 0.0, 1.0);
-        // Each step squares the error.
-        if (std::max(std::abs(du), std::abs(dv)) < 1e-9) return;
-    }
-}
-
 // Solves the 3 x 3 system by Cramer's rule; false if it has no solution.
 bool solve(const std::array<std::array<double, 3>, 3>& a, const std::array<double, 3>& b,
            std::array<double, 3>& x) {
@@ -57,18 +45,16 @@ bool solve(const std::array<std::array<double, 3>, 3>& a, const std::array<doubl
     return true;
 }
 
-}  // namespace
+std::array<double*, 4> parametersOf(CurvePoint& point) {
+    return {&point.u, &point.v, &point.s, &point.t};
+}
 
+// Puts a point of an intersection, (u, v) and (s, t) of two patches, where both are in the same
+// place, as near as possible to where it was. False if that fails.
 bool meet(std::span<const ViewPatch> patches, CurvePoint& point) {
     const ViewPatch& first = patches[static_cast<std::size_t>(point.patch)];
     const ViewPatch& second = patches[static_cast<std::size_t>(point.other)];
-    std::array<double*, 4> parameters{&point.u, &point.v, &point.s, &point.t};
-    // Where sides of both patches meet, one of them is enough to hold the point.
-    std::array<bool, 4> fixed{};
-    for (std::size_t k = 0; k < 4; ++k) {
-        fixed[k] = *parameters[k] == 0 || *parameters[k] == 1;
-        if (fixed[k]) break;
-    }
+    const std::array<double*, 4> parameters = parametersOf(point);
     for (int step = 0; step < 20; ++step) {
         const ViewPoint p = first.at(point.u, point.v), q = second.at(point.s, point.t);
         const std::array<double, 3> gap{q.x - p.x, q.y - p.y, q.z - p.z};
@@ -77,7 +63,6 @@ bool meet(std::span<const ViewPatch> patches, CurvePoint& point) {
         // The shortest step that closes the gap: J^T (J J^T)^-1 gap.
         std::array<std::array<double, 3>, 3> square{};
         for (std::size_t k = 0; k < 4; ++k) {
-            if (fixed[k]) continue;
             for (std::size_t r = 0; r < 3; ++r) {
                 for (std::size_t c = 0; c < 3; ++c) square[r][c] += columns[k][r] * columns[k][c];
             }
@@ -86,7 +71,6 @@ bool meet(std::span<const ViewPatch> patches, CurvePoint& point) {
         if (!solve(square, gap, weights)) return false;
         double largest = 0;
         for (std::size_t k = 0; k < 4; ++k) {
-            if (fixed[k]) continue;
             double move = 0;
             for (std::size_t r = 0; r < 3; ++r) move += columns[k][r] * weights[r];
             largest = std::max(largest, std::abs(move));
@@ -96,9 +80,10 @@ bool meet(std::span<const ViewPatch> patches, CurvePoint& point) {
         if (step == 19 && largest > 1e-9) return false;
     }
     for (double* parameter : parameters) *parameter = std::clamp(*parameter, 0.0, 1.0);
-    placeMeeting(patches, point);
     return true;
 }
+
+}  // namespace
 
 void placeMeeting(std::span<const ViewPatch> patches, CurvePoint& point) {
     const ViewPatch& first = patches[static_cast<std::size_t>(point.patch)];
@@ -125,8 +110,22 @@ CurvePoint pointBetween(std::span<const ViewPatch> patches, const CurvePoint& a,
     point.s = between(a.s, b.s);
     point.t = between(a.t, b.t);
     const ViewPatch& patch = patches[static_cast<std::size_t>(a.patch)];
-    if (point.rule == CurveRule::Meeting && meet(patches, point)) return point;
-    if (point.rule == CurveRule::Fold) ontoFold(patch, point);
+    if (point.rule == CurveRule::Meeting && meet(patches, point)) {
+        // A curve that lies on a side is not held there while the point is sought: that would leave
+        // nothing to tell where along it.
+        CurvePoint begin = a, end = b;
+        const auto from = parametersOf(begin), to = parametersOf(end), here = parametersOf(point);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const bool isOnSide = *from[k] == *to[k] && (*from[k] == 0 || *from[k] == 1);
+            if (isOnSide) *here[k] = *from[k];
+        }
+        placeMeeting(patches, point);
+        return point;
+    }
+    if (point.rule == CurveRule::Fold) {
+        // Where F has no gradient both ends are as good.
+        ontoZero([&](double u, double v) { return evaluate(patch.f, u, v); }, point.u, point.v);
+    }
     place(patch, point, b.x - a.x, b.y - a.y);
     return point;
 }

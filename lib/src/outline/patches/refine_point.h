@@ -11,11 +11,6 @@ namespace bandvox {
 CurvePoint pointBetween(std::span<const ViewPatch> patches, const CurvePoint& a,
                         const CurvePoint& b, double share);
 
-/// Puts a point of an intersection, (u, v) and (s, t) of two patches, where both are in the same
-/// place, as near as possible to where it was; one on a side of its patch stays there.
-/// False if that fails.
-bool meet(std::span<const ViewPatch> patches, CurvePoint& point);
-
 /// Sets where the view sees a point of an intersection, and its direction, by its parameters.
 void placeMeeting(std::span<const ViewPatch> patches, CurvePoint& point);
 

@@ -278,10 +278,19 @@ int Sheets::countBefore(const CurvePoint& point, double margin) const {
 std::optional<Sheets::Place> Sheets::firstAt(double x, double y) const {
     Sight sight{x, y, std::numeric_limits<double>::infinity(), sameDepth()};
     meetAll(sight);
-    const auto first = std::min_element(sight.met.begin(), sight.met.end(),
-                                        [](const Place& a, const Place& b) { return a.z < b.z; });
-    if (first == sight.met.end()) return std::nullopt;
-    return *first;
+    if (sight.met.empty()) return std::nullopt;
+    const auto nearest = std::min_element(sight.met.begin(), sight.met.end(),
+                                          [](const Place& a, const Place& b) { return a.z < b.z; });
+    // Of surfaces in the same place rounding does not choose.
+    const double limit = nearest->z + sameDepth();
+    const auto objectOf = [&](const Place& place) {
+        return mPatches[static_cast<std::size_t>(place.patch)].object;
+    };
+    Place first = *nearest;
+    for (const Place& place : sight.met) {
+        if (place.z <= limit && objectOf(place) < objectOf(first)) first = place;
+    }
+    return first;
 }
 
 }  // namespace bandvox

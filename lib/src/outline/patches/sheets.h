@@ -30,7 +30,8 @@ class Sheets {
         double u = 0, v = 0, z = 0;
     };
 
-    /// What the line of sight at a place of the page meets first.
+    /// What the line of sight at a place of the page meets first; of objects in the same place the
+    /// one of the lowest number.
     std::optional<Place> firstAt(double x, double y) const;
 
     /// A part of a patch, as the page sees it.

@@ -122,9 +122,10 @@ class CurveMarch {
             }
             if (mKnown.contain(next->space.at)) return false;
             if (!mEquations.holds(next->space)) {
-                if (const auto end = endBetween(last.space, next->space)) {
-                    chain.push_back(pointOf(*end));
-                }
+                const SpacePoint end =
+                    changeBetween(last.space, next->space, 1e-3,
+                                  [&](const SpacePoint& p) { return mEquations.holds(p); });
+                if (end.at != last.space.at) chain.push_back(pointOf(end));
                 return false;
             }
             const bool isSmooth = last.space.tangent().dot(next->space.tangent()) > 0.994 &&
@@ -134,20 +135,22 @@ class CurveMarch {
         }
     }
 
-    // The last place that holds, by halving.
-    std::optional<SpacePoint> endBetween(const SpacePoint& good, const SpacePoint& bad) {
-        constexpr double kNearEnough = 1e-3;
+    // The last place between two, by halving to a share of the way, of which `isLikeFirst` says
+    // yes, as of the first.
+    template <class IsLikeFirst>
+    SpacePoint changeBetween(const SpacePoint& a, const SpacePoint& b, double nearEnough,
+                             const IsLikeFirst& isLikeFirst) {
         double low = 0, high = 1;
-        std::optional<SpacePoint> found;
-        while (high - low > kNearEnough) {
+        SpacePoint last = a;
+        while (high - low > nearEnough) {
             const double share = 0.5 * (low + high);
-            const auto middle = spaceBetween(mEquations, good.at, bad.at, share);
+            const auto middle = spaceBetween(mEquations, a.at, b.at, share);
             if (!middle) break;
-            const bool isGood = mEquations.holds(*middle);
-            if (isGood) found = middle;
-            (isGood ? low : high) = share;
+            const bool isLow = isLikeFirst(*middle);
+            if (isLow) last = *middle;
+            (isLow ? low : high) = share;
         }
-        return found;
+        return last;
     }
 
     bool passesStart(const Chain& chain, const ChainPoint& next) const {
@@ -203,8 +206,7 @@ class CurveMarch {
         curve.points.push_back(chain.front().seen);
         for (std::size_t i = 1; i < chain.size(); ++i) {
             if ((chain[i - 1].space.turn < 0) != (chain[i].space.turn < 0)) {
-                const auto turn = turnBetween(chain[i - 1], chain[i]);
-                if (turn) curve.points.push_back(*turn);
+                curve.points.push_back(turnBetween(chain[i - 1], chain[i]));
             }
             curve.points.push_back(chain[i].seen);
         }
@@ -239,20 +241,12 @@ class CurveMarch {
         points.resize(kept);
     }
 
-    // Where the curve's image turns back, by halving.
-    std::optional<CurvePoint> turnBetween(const ChainPoint& a, const ChainPoint& b) {
-        constexpr double kNearEnough = 1e-6;
-        double low = 0, high = 1;
-        std::optional<SpacePoint> found;
-        while (high - low > kNearEnough) {
-            const double share = 0.5 * (low + high);
-            const auto middle = spaceBetween(mEquations, a.space.at, b.space.at, share);
-            if (!middle) break;
-            found = middle;
-            ((middle->turn < 0) == (a.space.turn < 0) ? low : high) = share;
-        }
-        if (!found) return std::nullopt;
-        CurvePoint turn = mEquations.seen(*found);
+    // Where the curve's image turns back.
+    CurvePoint turnBetween(const ChainPoint& a, const ChainPoint& b) {
+        const auto isBefore = [&](const SpacePoint& p) {
+            return (p.turn < 0) == (a.space.turn < 0);
+        };
+        CurvePoint turn = mEquations.seen(changeBetween(a.space, b.space, 1e-6, isBefore));
         turn.corner = true;
         return turn;
     }

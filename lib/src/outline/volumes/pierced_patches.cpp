@@ -2,6 +2,7 @@
 
 #include "outline/drawing/join_curves.h"
 #include "outline/patches/control_net.h"
+#include "outline/patches/onto_zero.h"
 
 #include <bandvox/core/parallel.h>
 
@@ -20,8 +21,9 @@ namespace {
 
 using openvdb::Vec3d;
 
-constexpr double kCell = 0.5;  // largest side of a cell, voxels
-constexpr int kFinest = 13;    // halvings of a patch at most
+constexpr double kCell = 0.5;   // largest side of a cell, voxels
+constexpr int kFinest = 13;     // halvings of a patch at most
+constexpr int kPartsLevel = 3;  // halvings to the parts whose speed is bounded
 
 /// A part of a patch in index coordinates.
 struct PatchBlock {
@@ -71,10 +73,30 @@ class PatchPiercing {
 
     // How often to halve until no side of a cell is too long.
     int levelOf(const ControlNet<4>& points) const {
-        double longest = 0;
+        const double halvings = std::ceil(std::log2(std::max(fastest(points, 0) / kCell, 1.0)));
+        return std::clamp(static_cast<int>(halvings), kPartsLevel, kFinest);
+    }
+
+    // A bound of the derivatives by the whole patch's parameters. M. S. Floater, "Derivatives of
+    // rational Bézier curves", 1992: the degree times the largest step between control points,
+    // times the square of the ratio of weights. Of parts of the patch that is nearly 1.
+    double fastest(ControlNet<4> points, int level) const {
+        if (level < kPartsLevel) {
+            ControlNet<4> high = halveNet(points, mPatch.degreeU, mPatch.degreeV, true);
+            double result = 0;
+            for (ControlNet<4>* half : {&points, &high}) {
+                const ControlNet<4> other = halveNet(*half, mPatch.degreeU, mPatch.degreeV, false);
+                result = std::max({result, fastest(*half, level + 1), fastest(other, level + 1)});
+            }
+            return result;
+        }
+        double longest = 0, least = points[0][3], most = least;
         for (int i = 0; i <= mPatch.degreeU; ++i) {
             for (int j = 0; j <= mPatch.degreeV; ++j) {
-                const Vec3d p = placeOf(points[mPatch.index(i, j)]);
+                const auto& point = points[mPatch.index(i, j)];
+                least = std::min(least, point[3]);
+                most = std::max(most, point[3]);
+                const Vec3d p = placeOf(point);
                 const auto compare = [&](std::size_t next, int degree) {
                     longest = std::max(longest, degree * (placeOf(points[next]) - p).length());
                 };
@@ -82,8 +104,8 @@ class PatchPiercing {
                 if (j < mPatch.degreeV) compare(mPatch.index(i, j + 1), mPatch.degreeV);
             }
         }
-        const double halvings = std::ceil(std::log2(std::max(longest / kCell, 1.0)));
-        return std::clamp(static_cast<int>(halvings), 3, kFinest);
+        const double ratio = most / least;
+        return std::ldexp(longest * ratio * ratio, level);
     }
 
     // False if the part is far from the solid.
@@ -270,15 +292,8 @@ CurvePoint PiercingFinder::seen(int patch, double u, double v) {
 
 CurvePoint PiercingFinder::between(const CurvePoint& a, const CurvePoint& b, double share) {
     double u = a.u + share * (b.u - a.u), v = a.v + share * (b.v - a.v);
-    for (int step = 0; step < 8; ++step) {
-        const Gradient2 g = at(a.patch, u, v);
-        const double square = g.du * g.du + g.dv * g.dv;
-        if (!(square > 0)) break;
-        const double du = -g.value * g.du / square, dv = -g.value * g.dv / square;
-        u = std::clamp(u + du, 0.0, 1.0);
-        v = std::clamp(v + dv, 0.0, 1.0);
-        if (std::max(std::abs(du), std::abs(dv)) < 1e-10) break;
-    }
+    const auto functionAt = [&](double x, double y) { return at(a.patch, x, y); };
+    if (!ontoZero(functionAt, u, v)) return share < 0.5 ? a : b;
     return seen(a.patch, u, v);
 }
 
