@@ -85,6 +85,18 @@ TEST(PatchSolid, CountsWhereBallsOverlapOnce) {
     EXPECT_NEAR(united.source->volume(), both - lens, 1e-5);
 }
 
+TEST(PatchSolid, CountsFacesThatLieOnEachOtherNotAtAll) {
+    // A cylinder on a wider one: the discs between them have their middles in the same place.
+    Patches upper = cylinderPatches(0.6, 0.5);
+    for (BezierPatch& patch : upper) {
+        for (auto& p : patch.control) p[2] += 2 * p[3];
+    }
+    const PatchSolid solid = makePatchSolid("tower", together(cylinderPatches(1, 2), upper));
+    EXPECT_EQ(solid.report.piecesMeeting, 2);
+    EXPECT_NEAR(solid.source->volume(), kPi * (2 + 0.18), 1e-4);
+    EXPECT_NEAR(solid.source->area(), kPi * (2 + 4 + 0.6), 2e-3);
+}
+
 TEST(PatchSolid, LeavesOutWhatIsInsideAndKeepsCavities) {
     const Patches outer = spherePatches(Vec3d(0), 1);
     Patches inner = spherePatches(Vec3d(0.2, 0, 0), 0.5);

@@ -1,5 +1,7 @@
 #include "source/free_form_patch.h"
 
+#include "source/bernstein_basis.h"
+
 #include <bandvox/source/quadrature.h>
 
 #include <algorithm>
@@ -12,30 +14,7 @@ namespace {
 
 using openvdb::Vec3d;
 
-constexpr int kHighest = BezierPatch::kHighestDegree;
-
-/// The Bernstein polynomials of a degree at a parameter, and their derivatives.
-struct BernsteinBasis {
-    std::array<double, kHighest + 1> value{}, slope{};
-
-    BernsteinBasis(int degree, double t) {
-        value[0] = 1;
-        for (int d = 1; d < degree; ++d) raise(d, t);
-        for (int i = 0; i <= degree; ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            slope[k] = degree * ((i > 0 ? value[k - 1] : 0) - (i < degree ? value[k] : 0));
-        }
-        raise(degree, t);
-    }
-
-  private:
-    void raise(int degree, double t) {
-        for (auto k = static_cast<std::size_t>(degree); k > 0; --k) {
-            value[k] = (1 - t) * value[k] + t * value[k - 1];
-        }
-        value[0] *= 1 - t;
-    }
-};
+static_assert(BezierPatch::kHighestDegree <= BernsteinBasis::kMost);
 
 /// Halvings after which integrals are taken as they are.
 constexpr int kDeepestIntegral = 12;
@@ -128,8 +107,7 @@ FreeFormPatch::Homogeneous FreeFormPatch::homogeneousAt(double u, double v) cons
     std::size_t k = 0;
     for (int i = 0; i <= mPatch.degreeU; ++i) {
         for (int j = 0; j <= mPatch.degreeV; ++j, ++k) {
-            const double weight =
-                a.value[static_cast<std::size_t>(i)] * b.value[static_cast<std::size_t>(j)];
+            const double weight = a.value(i) * b.value(j);
             for (std::size_t c = 0; c < 4; ++c) sum[c] += weight * mPatch.control[k][c];
         }
     }
@@ -141,18 +119,20 @@ PatchPoint FreeFormPatch::at(double u, double v) const {
     const BernsteinBasis b(mPatch.degreeV, v);
     Homogeneous s{}, su{}, sv{};
     std::size_t k = 0;
-    for (std::size_t i = 0; i <= static_cast<std::size_t>(mPatch.degreeU); ++i) {
+    for (int i = 0; i <= mPatch.degreeU; ++i) {
         Homogeneous row{}, slope{};
-        for (std::size_t j = 0; j <= static_cast<std::size_t>(mPatch.degreeV); ++j, ++k) {
+        for (int j = 0; j <= mPatch.degreeV; ++j, ++k) {
+            const double value = b.value(j), rise = b.slope(j);
             for (std::size_t c = 0; c < 4; ++c) {
-                row[c] += b.value[j] * mPatch.control[k][c];
-                slope[c] += b.slope[j] * mPatch.control[k][c];
+                row[c] += value * mPatch.control[k][c];
+                slope[c] += rise * mPatch.control[k][c];
             }
         }
+        const double value = a.value(i), rise = a.slope(i);
         for (std::size_t c = 0; c < 4; ++c) {
-            s[c] += a.value[i] * row[c];
-            su[c] += a.slope[i] * row[c];
-            sv[c] += a.value[i] * slope[c];
+            s[c] += value * row[c];
+            su[c] += rise * row[c];
+            sv[c] += value * slope[c];
         }
     }
     PatchPoint p;

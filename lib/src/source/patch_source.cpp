@@ -22,6 +22,10 @@ constexpr int kDeepestCellSplit = 64;
 /// Longest side of a cell that others may cut, voxels.
 constexpr double kCutCell = 1.0;
 
+/// Diagonal of a cell, voxels, at which its turning does not count any more: beside a point that a
+/// side has collapsed to, all that is left of directions is rounding.
+constexpr double kSmallCell = 0.25;
+
 /// What stays the same while a patch is being split.
 struct PatchSampling {
     const Patch& patch;
@@ -100,9 +104,9 @@ void applyRules(int uRule, int vRule, const ParameterCell& cell, const PatchSamp
 }
 
 /// Of a cell that others may cut.
-void applyTrimmedRule(const ParameterCell& cell, const PatchSampling& sampling) {
+void applyTrimmedRule(const CellTrim& trim, const PatchSampling& sampling) {
     const double lengthScale = 1.0 / sampling.voxelSize;
-    for (const TrimmedPoint& t : trimmedRule(*sampling.trim, sampling.patch, cell)) {
+    for (const TrimmedPoint& t : trimmedRule(trim)) {
         const PatchPoint p = sampling.patch.at(t.u, t.v);
         sampling.clip.append(p.position * lengthScale,
                              (t.weight * lengthScale * lengthScale) * p.du.cross(p.dv),
@@ -118,21 +122,21 @@ void sampleCell(const ParameterCell& cell, int depth, const PatchSampling& sampl
     }
 
     // See what a union leaves of it.
+    const CellSize size = measure(cell, sampling);
     if (sampling.trim != nullptr) {
-        const PatchTrim::Share share = sampling.trim->share(sampling.patch, cell);
-        if (share == PatchTrim::Share::None) return;
-        if (share == PatchTrim::Share::All) {
+        const CellTrim trim(*sampling.trim, sampling.patch, cell);
+        if (trim.isUniform()) {
+            if (!trim.keeps(cell.u0, cell.v0)) return;
             PatchSampling whole = sampling;
             whole.trim = nullptr;
             sampleCell(cell, depth, whole);
             return;
         }
-    }
-
-    const CellSize size = measure(cell, sampling);
-    if (sampling.trim != nullptr && std::max(size.u, size.v) <= kCutCell) {
-        applyTrimmedRule(cell, sampling);
-        return;
+        const bool isSmall = box.extents().length() <= kSmallCell * sampling.voxelSize;
+        if (isSmall || std::max(size.u, size.v) <= kCutCell) {
+            applyTrimmedRule(trim, sampling);
+            return;
+        }
     }
     const int uRule = lowestIntervalRule(sampling.quadrature, size.u);
     const int vRule = lowestIntervalRule(sampling.quadrature, size.v);

@@ -14,14 +14,13 @@ constexpr std::size_t kProbes = 5;  ///< along a line of a cell
 constexpr int kHalvings = 24;       ///< towards where a line is cut
 constexpr int kCutRule = 4;         ///< number of intervalRule: its points less 1
 
-/// A cell, with its parameters from 0 to 1, exchanged if the cut runs along v.
+/// A cell with its parameters from 0 to 1, exchanged if the cut runs along v.
 struct CellFrame {
-    const PatchTrim& trim;
-    const Patch& patch;
-    ParameterCell cell;
+    const CellTrim& trim;
     bool exchanged = false;
 
     TrimmedPoint at(double across, double along, double weight) const {
+        const ParameterCell& cell = trim.cell();
         const double du = cell.u1 - cell.u0;
         const double dv = cell.v1 - cell.v0;
         const double u = cell.u0 + du * (exchanged ? along : across);
@@ -30,7 +29,7 @@ struct CellFrame {
     }
     bool keeps(double across, double along) const {
         const TrimmedPoint p = at(across, along, 0);
-        return trim.keeps(patch, p.u, p.v);
+        return trim.keeps(p.u, p.v);
     }
 };
 
@@ -78,39 +77,71 @@ void addLine(const CellFrame& frame, double across, double weight,
     }
 }
 
-}  // namespace
-
-PatchTrim::Share PatchTrim::share(const Patch& patch, const ParameterCell& cell) const {
-    const openvdb::BBoxd box = patch.bounds(cell);
-    for (std::size_t k = 0; k < mPieces.size(); ++k) {
-        if (k != mOwn && mPieces[k].winding->mayMeet(box)) return Share::Unknown;
+std::vector<TrimmedPoint> wholeRule(const CellFrame& frame) {
+    std::vector<TrimmedPoint> points;
+    for (const IntervalPoint& p : intervalRule(kCutRule)) {
+        for (const IntervalPoint& q : intervalRule(kCutRule)) {
+            points.push_back(frame.at(p.position, q.position, p.weight * q.weight));
+        }
     }
-    return keeps(patch, 0.5 * (cell.u0 + cell.u1), 0.5 * (cell.v0 + cell.v1)) ? Share::All
-                                                                              : Share::None;
+    return points;
 }
 
-bool PatchTrim::keeps(const Patch& patch, double u, double v) const {
-    const PatchPoint p = patch.at(u, v);
+}  // namespace
+
+CellTrim::CellTrim(const PatchTrim& trim, const Patch& patch, const ParameterCell& cell)
+    : mTrim(trim), mPatch(patch), mCell(cell), mAround(trim.mPieces[trim.mOwn].isCavity ? -1 : 0) {
+    openvdb::BBoxd box = patch.bounds(cell);
+    box.expand(trim.mDistance);
+    const Vec3d middle = patch.at(0.5 * (cell.u0 + cell.u1), 0.5 * (cell.v0 + cell.v1)).position;
+    for (std::size_t k = 0; k < trim.mPieces.size(); ++k) {
+        if (k == trim.mOwn) continue;
+        const PatchWinding& other = *trim.mPieces[k].winding;
+        if (other.mayMeet(box)) {
+            mNear.push_back(k);
+        } else {
+            mAround += other.at(middle);
+        }
+    }
+}
+
+// Where a side of the patch has collapsed there is no normal but beside it.
+Vec3d CellTrim::normalAt(const PatchPoint& p, double u, double v) const {
     Vec3d normal = p.du.cross(p.dv);
+    const double speed =
+        std::max(p.du.length() * (mCell.u1 - mCell.u0), p.dv.length() * (mCell.v1 - mCell.v0));
+    constexpr double kFlat = 1e-9;
+    const double area = normal.length() * (mCell.u1 - mCell.u0) * (mCell.v1 - mCell.v0);
+    if (!(area > kFlat * speed * speed)) {
+        constexpr double kAside = 1e-3;
+        const double middleU = 0.5 * (mCell.u0 + mCell.u1), middleV = 0.5 * (mCell.v0 + mCell.v1);
+        const PatchPoint near = mPatch.at(u + kAside * (middleU - u), v + kAside * (middleV - v));
+        normal = near.du.cross(near.dv);
+    }
     if (!normal.normalize(0)) normal = Vec3d(0);
-    int before = mPieces[mOwn].isCavity ? -1 : 0;
-    int behind = before + 1;
-    for (std::size_t k = 0; k < mPieces.size(); ++k) {
-        if (k == mOwn) continue;
-        const PatchWinding& other = *mPieces[k].winding;
-        const int outside = other.at(p.position + mDistance * normal);
-        const int inside = other.at(p.position - mDistance * normal);
-        if (inside > outside && k < mOwn) return false;  // is counted there
-        before += outside;
-        behind += inside;
+    return normal;
+}
+
+bool CellTrim::keeps(double u, double v) const {
+    int before = mAround, behind = mAround + 1;
+    if (!mNear.empty()) {
+        const PatchPoint p = mPatch.at(u, v);
+        const Vec3d normal = normalAt(p, u, v);
+        for (const std::size_t k : mNear) {
+            const PatchWinding& other = *mTrim.mPieces[k].winding;
+            const int outside = other.at(p.position + mTrim.mDistance * normal);
+            const int inside = other.at(p.position - mTrim.mDistance * normal);
+            if (inside > outside && k < mTrim.mOwn) return false;  // is counted there
+            before += outside;
+            behind += inside;
+        }
     }
     return before <= 0 && behind >= 1;
 }
 
-std::vector<TrimmedPoint> trimmedRule(const PatchTrim& trim, const Patch& patch,
-                                      const ParameterCell& cell) {
+std::vector<TrimmedPoint> trimmedRule(const CellTrim& trim) {
     // See which way the cut runs.
-    CellFrame frame{trim, patch, cell};
+    CellFrame frame{trim};
     std::array<std::array<bool, kProbes>, kProbes> kept{};
     for (std::size_t i = 0; i < kProbes; ++i) {
         for (std::size_t j = 0; j < kProbes; ++j) {
@@ -125,6 +156,7 @@ std::vector<TrimmedPoint> trimmedRule(const PatchTrim& trim, const Patch& patch,
             alongU += kept[j][i] != kept[j + 1][i] ? 1 : 0;
         }
     }
+    if (alongU + alongV == 0) return kept[0][0] ? wholeRule(frame) : std::vector<TrimmedPoint>();
     frame.exchanged = alongU > alongV;
 
     // What is left of lines is smooth from line to line between those at which the cut leaves.

@@ -19,24 +19,42 @@ class PatchTrim {
         bool isCavity = false;  ///< winds around its inside the other way
     };
 
-    /// What is left of a cell.
-    enum class Share { None, All, Unknown };
-
     /// Of the piece `own`. Faces that lie on each other to within `distance` (world units) count
     /// once if they look the same way, and not at all otherwise.
     PatchTrim(const std::vector<Piece>& pieces, std::size_t own, double distance)
         : mPieces(pieces), mOwn(own), mDistance(distance) {}
 
-    /// Unknown if other pieces may be in the cell's box.
-    Share share(const Patch& patch, const ParameterCell& cell) const;
-
-    /// True if the point is left.
-    bool keeps(const Patch& patch, double u, double v) const;
-
   private:
+    friend class CellTrim;
     const std::vector<Piece>& mPieces;
     std::size_t mOwn;
     double mDistance;
+};
+
+/// What a trim leaves of one cell of a patch. Pieces that are not near it wind as often around all
+/// of it, and are asked once.
+class CellTrim {
+  public:
+    CellTrim(const PatchTrim& trim, const Patch& patch, const ParameterCell& cell);
+
+    const ParameterCell& cell() const { return mCell; }
+    const Patch& patch() const { return mPatch; }
+
+    /// True if no other piece is near: all points of the cell are left, or none.
+    bool isUniform() const { return mNear.empty(); }
+
+    /// True if the point of the cell is left.
+    bool keeps(double u, double v) const;
+
+  private:
+    openvdb::Vec3d normalAt(const PatchPoint& p, double u, double v) const;
+
+    const PatchTrim& mTrim;
+    const Patch& mPatch;
+    ParameterCell mCell;
+    int mAround;  ///< how often its own piece, seen from before it, and those that are not near
+                  ///< wind
+    std::vector<std::size_t> mNear;
 };
 
 /// A point of a product rule on what is left of a cell: parameters and weight, of which those of
@@ -48,7 +66,6 @@ struct TrimmedPoint {
 /// Gauss points on what is left of a cell: along lines across the cut, up to where that is, and
 /// over the lines that it passes through, between those where it leaves the cell. `points` each
 /// way, as in intervalRule. Sees no part that lies between the quarters of a line.
-std::vector<TrimmedPoint> trimmedRule(const PatchTrim& trim, const Patch& patch,
-                                      const ParameterCell& cell);
+std::vector<TrimmedPoint> trimmedRule(const CellTrim& trim);
 
 }  // namespace bandvox

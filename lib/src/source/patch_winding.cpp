@@ -1,5 +1,7 @@
 #include "source/patch_winding.h"
 
+#include "source/bernstein_basis.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -18,36 +20,117 @@ const Vec3d kAxis = Vec3d(0.5317, 0.2913, 0.7951).unit();
 const Vec3d kAcross = kAxis.cross(Vec3d(0.6113, -0.7717, 0.1759)).unit();
 const Vec3d kUp = kAxis.cross(kAcross);
 
-/// How far Jacobians of a part may be from their mean, times its inverse, in the 1-norm. The middle
-/// one's inverse times any other is then off from 1 by at most twice that over 1 less that, and a
-/// root half a side away along both axes is at most 1 plus that away by Newton's first step.
+/// How far Jacobians of a part may be from their mean, times its inverse, in the 1-norm. The
+/// inverse of one times any other is then off from 1 by at most q, and a root in the part is no
+/// farther from where Newton's method starts than 1 / (1 - q) of its step, and from where that ends
+/// than q / (1 - q) of it.
 constexpr double kMostTurning = 0.25;
-constexpr double kFarthestStep = 1 + 2 * kMostTurning / (1 - kMostTurning);
+constexpr double kInverseTurning = 2 * kMostTurning / (1 - kMostTurning);
+constexpr double kRootFromStart = 1 / (1 - kInverseTurning);
+constexpr double kRootFromStep = kInverseTurning / (1 - kInverseTurning);
 
 /// Halvings of a part: before it is stored, and while a ray is followed.
-constexpr int kStoredHalvings = 6;
-constexpr int kRayHalvings = 40;
+constexpr int kStoredHalvings = 12;
+constexpr int kRayHalvings = 80;
 
 Vec3d inFrame(const Vec3d& p) {
     return {kAxis.dot(p), kAcross.dot(p), kUp.dot(p)};
 }
 
-openvdb::BBoxd hullOf(const BezierPatch& patch) {
+openvdb::BBoxd hullOf(const PatchWinding::Part& part) {
     openvdb::BBoxd box;
-    for (const Point& p : patch.control) box.expand(Vec3d(p[0], p[1], p[2]) / p[3]);
+    for (const Point& p : part.net) box.expand(Vec3d(p[0], p[1], p[2]) / p[3]);
     return box;
 }
 
-std::array<BezierPatch, 4> quartersOf(const BezierPatch& p) {
-    return {restricted(p, 0, 0.5, 0, 0.5), restricted(p, 0.5, 1, 0, 0.5),
-            restricted(p, 0, 0.5, 0.5, 1), restricted(p, 0.5, 1, 0.5, 1)};
+Vec3d inWorld(const Point& p) {
+    return (p[0] * kAxis + p[1] * kAcross + p[2] * kUp) / p[3];
+}
+
+/// Control points by their places in a net.
+struct NetSteps {
+    int degreeU, degreeV;
+
+    /// Calls visit(from, to, parameter, degree) for neighbours along u, parameter 0, and v, 1.
+    template <typename Visit>
+    void visit(const Visit& visit) const {
+        const auto row = static_cast<std::size_t>(degreeV) + 1;
+        std::size_t k = 0;
+        for (int i = 0; i <= degreeU; ++i) {
+            for (int j = 0; j <= degreeV; ++j, ++k) {
+                if (i < degreeU) visit(k, k + row, 0, degreeU);
+                if (j < degreeV) visit(k, k + 1, 1, degreeV);
+            }
+        }
+    }
+};
+
+/// Makes a part its half along its longer side, and returns the other one. Parts beside a point
+/// that a side has collapsed to stay wide as they are, and get shorter.
+PatchWinding::Part halve(PatchWinding::Part& part) {
+    double longest[2]{};
+    NetSteps{part.degreeU, part.degreeV}.visit(
+        [&](std::size_t from, std::size_t to, int parameter, int degree) {
+            const Point &a = part.net[from], &b = part.net[to];
+            double square = 0;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double step = b[c] / b[3] - a[c] / a[3];
+                square += step * step;
+            }
+            longest[parameter] = std::max(longest[parameter], degree * degree * square);
+        });
+    PatchWinding::Part high{part.degreeU, part.degreeV,
+                            halveNet(part.net, part.degreeU, part.degreeV, longest[0] > longest[1]),
+                            part.isPolynomial};
+    return high;
+}
+
+using RayJet = PatchWinding::RayJet;
+
+RayJet jetAt(const PatchWinding::Part& part, double u, double v) {
+    const BernsteinBasis a(part.degreeU, u), b(part.degreeV, v);
+    Point s{}, su{}, sv{};
+    const Point* p = part.net.begin();
+    for (int i = 0; i <= part.degreeU; ++i) {
+        Point row{}, slope{};
+        for (int j = 0; j <= part.degreeV; ++j, ++p) {
+            const double value = b.value(j), rise = b.slope(j);
+            for (std::size_t c = 0; c < 4; ++c) {
+                row[c] += value * (*p)[c];
+                slope[c] += rise * (*p)[c];
+            }
+        }
+        const double value = a.value(i), rise = a.slope(i);
+        for (std::size_t c = 0; c < 4; ++c) {
+            s[c] += value * row[c];
+            su[c] += rise * row[c];
+            sv[c] += value * slope[c];
+        }
+    }
+    RayJet jet;
+    const double scale = 1 / s[3];
+    for (std::size_t c = 0; c < 3; ++c) {
+        jet.position[c] = s[c] * scale;
+        jet.du[c] = (su[c] - su[3] * jet.position[c]) * scale;
+        jet.dv[c] = (sv[c] - sv[3] * jet.position[c]) * scale;
+    }
+    return jet;
+}
+
+// Along the ray, by a parameter, of a part without weights.
+double largestSlopeOf(const PatchWinding::Part& part) {
+    double largest = 0;
+    NetSteps{part.degreeU, part.degreeV}.visit(
+        [&](std::size_t from, std::size_t to, int, int degree) {
+            largest = std::max(largest, degree * std::abs(part.net[to][0] - part.net[from][0]));
+        });
+    return largest;
 }
 
 /// Two polynomials, which are zero together where a part is met by the line through a point.
 struct LineSystem {
-    const FreeFormPatch& surface;
+    const PatchWinding::Part& part;
     Vec3d origin;  ///< in the frame
-    const BezierPatch& part = surface.patch();
 
     /// w times the distances across and up from the line.
     std::array<double, 2> at(const Point& p) const {
@@ -56,7 +139,7 @@ struct LineSystem {
 
     bool hasNoRoot() const {
         bool below[3]{}, above[3]{};
-        for (const Point& p : part.control) {
+        for (const Point& p : part.net) {
             const auto [f, g] = at(p);
             const double ahead = p[0] - origin[0] * p[3];
             below[0] |= f <= 0;
@@ -91,109 +174,164 @@ struct LineSystem {
     }
 
     /// The crossing of the ray, with its sign, where there is one at most; nothing if Newton's
-    /// method does not find it out. `isBounded`: kFarthestStep holds.
-    std::optional<int> crossing(bool isBounded) const {
+    /// method does not find it out.
+    std::optional<int> crossing() const {
         double u = 0.5, v = 0.5;
-        constexpr int kMostSteps = 30;
-        constexpr double kLost = 1.0;
-        constexpr double kStep = 1e-14;
         for (int step = 0; step < kMostSteps; ++step) {
-            const PatchPoint jet = surface.at(u, v);
-            const double determinant = jet.du[1] * jet.dv[2] - jet.du[2] * jet.dv[1];
-            const double f = jet.position[1] - origin[1];
-            const double g = jet.position[2] - origin[2];
-            const double du = -(jet.dv[2] * f - jet.dv[1] * g) / determinant;
-            const double dv = -(jet.du[1] * g - jet.du[2] * f) / determinant;
-            if (!std::isfinite(du) || !std::isfinite(dv)) return {};
-            if (isBounded && step == 0 && std::abs(du) + std::abs(dv) > kFarthestStep) return 0;
-            u += du;
-            v += dv;
-            if (std::abs(du) + std::abs(dv) < kStep || step + 1 == kMostSteps) {
-                if (std::abs(du) + std::abs(dv) > 1e-9) return {};
-                const bool isInside = u >= 0 && u < 1 && v >= 0 && v < 1;
-                if (!isInside || jet.position[0] <= origin[0]) return 0;
-                return determinant > 0 ? 1 : -1;
+            const RayJet jet = jetAt(part, u, v);
+            const NewtonStep by = newtonStep(jet);
+            if (!std::isfinite(by.du) || !std::isfinite(by.dv)) return {};
+            u += by.du;
+            v += by.dv;
+            if (by.length() < kStep) return signAt(jet, u, v);
+            if (!isWithin(u, kLost) || !isWithin(v, kLost)) return {};
+        }
+        return {};
+    }
+
+    /// The same of a part without weights that is one to one, by the jet at its middle and the
+    /// largest slope along the ray. A step tells how far from its end the root is
+    /// at most, so that few are needed where that is clearly in the part and ahead, or is not.
+    std::optional<int> quickCrossing(RayJet jet, double largestSlope) const {
+        double u = 0.5, v = 0.5;
+        for (int step = 0; step < kMostSteps; ++step) {
+            const NewtonStep by = newtonStep(jet);
+            if (!std::isfinite(by.du) || !std::isfinite(by.dv)) return {};
+            const bool isBounded = isWithin(u, kBeside) && isWithin(v, kBeside);
+            const double farthest = std::max(u, 1 - u) + std::max(v, 1 - v);
+            u += by.du;
+            v += by.dv;
+            if (by.length() < kStep) return signAt(jet, u, v);
+            if (isBounded) {
+                const double reach = kRootFromStep * by.length();
+                if (by.length() > (1 + kInverseTurning) * farthest) return 0;
+                if (!isWithin(u, reach) || !isWithin(v, reach)) return 0;
+                const double ahead = jet.position[0] - origin[0];
+                if (std::abs(ahead) > kRootFromStart * by.length() * largestSlope) {
+                    if (ahead < 0) return 0;
+                    if (isWithin(u, -reach) && isWithin(v, -reach)) {
+                        return by.determinant > 0 ? 1 : -1;
+                    }
+                }
             }
-            if (std::abs(u - 0.5) > 0.5 + kLost || std::abs(v - 0.5) > 0.5 + kLost) return {};
+            if (!isWithin(u, kLost) || !isWithin(v, kLost)) return {};
+            jet = jetAt(part, u, v);
         }
         return {};
     }
 
   private:
+    // Each step squares the error; small parts are not known better than to 1e-13 or so.
+    static constexpr double kStep = 1e-10;
+    static constexpr int kMostSteps = 30;
+    // Slopes are bounded in the part; beyond its sides by so much they hardly differ.
+    static constexpr double kBeside = 1e-3;
+    static constexpr double kLost = 1.0;  // beyond its sides
+
+    static bool isWithin(double t, double beside) { return t >= -beside && t <= 1 + beside; }
+
+    struct NewtonStep {
+        double du, dv, determinant;
+        double length() const { return std::abs(du) + std::abs(dv); }
+    };
+
+    NewtonStep newtonStep(const RayJet& jet) const {
+        const double determinant = jet.du[1] * jet.dv[2] - jet.du[2] * jet.dv[1];
+        const double f = jet.position[1] - origin[1];
+        const double g = jet.position[2] - origin[2];
+        return {-(jet.dv[2] * f - jet.dv[1] * g) / determinant,
+                -(jet.du[1] * g - jet.du[2] * f) / determinant, determinant};
+    }
+
+    // Sides belong to one of the parts that they lie between.
+    int signAt(const RayJet& jet, double u, double v) const {
+        const bool isInside = u >= 0 && u < 1 && v >= 0 && v < 1;
+        if (!isInside || jet.position[0] <= origin[0]) return 0;
+        return jet.du[1] * jet.dv[2] > jet.du[2] * jet.dv[1] ? 1 : -1;
+    }
+
     template <typename Visit>
     void visitSlopes(const Visit& visit) const {
-        const int n = part.degreeU;
-        const int m = part.degreeV;
-        for (int i = 0; i <= n; ++i) {
-            for (int j = 0; j <= m; ++j) {
-                const auto here = at(part.at(i, j));
-                const auto go = [&](int k, int l, int parameter, int degree, double count) {
-                    const auto next = at(part.at(k, l));
-                    visit(parameter,
-                          std::array{degree * (next[0] - here[0]), degree * (next[1] - here[1])},
-                          1 / count);
-                };
-                if (i < n) go(i + 1, j, 0, n, static_cast<double>(n) * (m + 1));
-                if (j < m) go(i, j + 1, 1, m, static_cast<double>(m) * (n + 1));
-            }
-        }
+        const int n = part.degreeU, m = part.degreeV;
+        const double shares[2]{1.0 / (n * (m + 1)), 1.0 / (m * (n + 1))};
+        NetSteps{n, m}.visit([&](std::size_t from, std::size_t to, int parameter, int degree) {
+            const auto here = at(part.net[from]), next = at(part.net[to]);
+            visit(parameter, std::array{degree * (next[0] - here[0]), degree * (next[1] - here[1])},
+                  shares[parameter]);
+        });
     }
 };
 
-int crossings(const FreeFormPatch& surface, const Vec3d& origin, int depth, bool isOneToOne) {
-    const LineSystem system{surface, origin};
+int crossings(const PatchWinding::Part& part, const Vec3d& origin, int depth) {
+    const LineSystem system{part, origin};
     if (system.hasNoRoot()) return 0;
-    if (isOneToOne || system.isOneToOne()) {
-        if (const auto found = system.crossing(isOneToOne)) return *found;
+    std::optional<int> found;
+    if (part.isOneToOne) {
+        found = system.quickCrossing(part.middle, part.largestSlope);
+    } else if (system.isOneToOne()) {
+        found = part.isPolynomial
+                    ? system.quickCrossing(jetAt(part, 0.5, 0.5), largestSlopeOf(part))
+                    : system.crossing();
     }
+    if (found) return *found;
     if (depth == kRayHalvings) return 0;
-    int sum = 0;
-    for (const BezierPatch& quarter : quartersOf(surface.patch())) {
-        sum += crossings(FreeFormPatch(quarter), origin, depth + 1, false);
-    }
-    return sum;
+    PatchWinding::Part low = part;
+    low.isOneToOne = false;
+    const PatchWinding::Part high = halve(low);
+    return crossings(low, origin, depth + 1) + crossings(high, origin, depth + 1);
 }
 
-// Without weights the map is one to one on a part whatever the ray, or not.
-bool isPolynomial(const BezierPatch& patch) {
-    return std::all_of(patch.control.begin(), patch.control.end(),
-                       [](const Point& p) { return p[3] == 1; });
+// Whether a part may be in a box of the world, as well as parts tell that are as small as the box.
+bool mayBeIn(const openvdb::BBoxd& box, const PatchWinding::Part& part, int depth) {
+    openvdb::BBoxd hull;
+    for (const Point& p : part.net) hull.expand(inWorld(p));
+    if (!hull.hasOverlap(box)) return false;
+    constexpr int kMostHalvings = 16;
+    if (depth == kMostHalvings || hull.extents().length() <= box.extents().length()) return true;
+    PatchWinding::Part low = part;
+    const PatchWinding::Part high = halve(low);
+    return mayBeIn(box, low, depth + 1) || mayBeIn(box, high, depth + 1);
 }
 
 }  // namespace
 
 // Cuts a part until rays meet it once at most, or for some times if it is seen from its edge.
-void PatchWinding::store(const BezierPatch& patch, double size, int depth) {
-    FreeFormPatch part(patch);
-    const openvdb::BBoxd hull = hullOf(patch);
+void PatchWinding::store(Part part, double size, int depth) {
+    const openvdb::BBoxd hull = hullOf(part);
     const bool isOneToOne = LineSystem{part, hull.getCenter()}.isOneToOne();
     const bool isSmall = hull.extents().length() <= size;
     if (depth == kStoredHalvings || (isSmall && isOneToOne)) {
-        mParts.push_back({std::move(part), isOneToOne && isPolynomial(patch)});
+        part.isOneToOne = isOneToOne && part.isPolynomial;
+        part.middle = jetAt(part, 0.5, 0.5);
+        part.largestSlope = largestSlopeOf(part);
+        mParts.push_back(std::move(part));
         return;
     }
-    for (const BezierPatch& quarter : quartersOf(patch)) store(quarter, size, depth + 1);
+    Part high = halve(part);
+    store(std::move(part), size, depth + 1);
+    store(std::move(high), size, depth + 1);
 }
 
 PatchWinding::PatchWinding(const std::vector<const BezierPatch*>& patches,
                            const openvdb::BBoxd& bounds, double size)
     : mBounds(bounds) {
     for (const BezierPatch* patch : patches) {
-        BezierPatch inRays = *patch;
-        for (Point& p : inRays.control) {
-            const Vec3d turned = inFrame({p[0], p[1], p[2]});
-            p = {turned[0], turned[1], turned[2], p[3]};
-        }
-        store(inRays, size, 0);
+        Part part{patch->degreeU, patch->degreeV, ControlNet<4>(patch->control.size())};
+        std::transform(patch->control.begin(), patch->control.end(), part.net.begin(),
+                       [](const Point& p) {
+                           const Vec3d turned = inFrame({p[0], p[1], p[2]});
+                           return Point{turned[0], turned[1], turned[2], p[3]};
+                       });
+        // Then the map is one to one on a part whatever the ray, or not.
+        part.isPolynomial =
+            std::all_of(part.net.begin(), part.net.end(), [](const Point& p) { return p[3] == 1; });
+        store(std::move(part), size, 0);
     }
     std::vector<openvdb::BBoxd> hulls, boxes;
     for (const Part& part : mParts) {
-        const BezierPatch& patch = part.surface.patch();
-        hulls.push_back(hullOf(patch));
+        hulls.push_back(hullOf(part));
         openvdb::BBoxd& box = boxes.emplace_back();
-        for (const Point& p : patch.control) {
-            box.expand((p[0] * kAxis + p[1] * kAcross + p[2] * kUp) / p[3]);
-        }
+        for (const Point& p : part.net) box.expand(inWorld(p));
     }
     mTree = std::make_unique<BoxTree>(std::move(hulls));
     mWorldTree = std::make_unique<BoxTree>(std::move(boxes));
@@ -203,15 +341,14 @@ int PatchWinding::at(const Vec3d& point) const {
     if (!mBounds.isInside(point)) return 0;
     const Vec3d origin = inFrame(point);
     int sum = 0;
-    mTree->visitAlongX(origin, [&](std::uint32_t i) {
-        sum += crossings(mParts[i].surface, origin, 0, mParts[i].isOneToOne);
-    });
+    mTree->visitAlongX(origin, [&](std::uint32_t i) { sum += crossings(mParts[i], origin, 0); });
     return sum;
 }
 
 bool PatchWinding::mayMeet(const openvdb::BBoxd& box) const {
     bool meets = false;
-    mWorldTree->visitMeeting(box, [&](std::uint32_t) { meets = true; });
+    mWorldTree->visitMeeting(box,
+                             [&](std::uint32_t i) { meets = meets || mayBeIn(box, mParts[i], 0); });
     return meets;
 }
 

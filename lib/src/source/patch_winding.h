@@ -1,12 +1,13 @@
 #pragma once
 
 #include "source/box_tree.h"
-#include "source/free_form_patch.h"
+#include "source/control_net.h"
 
 #include <bandvox/source/bezier_patch.h>
 
 #include <openvdb/math/BBox.h>
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -27,14 +28,23 @@ class PatchWinding {
     /// True if a part of the patches may be in the box.
     bool mayMeet(const openvdb::BBoxd& box) const;
 
-  private:
-    /// A part of a patch, in the frame of the ray, which runs along x.
-    struct Part {
-        FreeFormPatch surface;
-        bool isOneToOne;  ///< rays meet it once at most
+    /// A point of a part and its derivatives: along the ray, across and up.
+    struct RayJet {
+        std::array<double, 3> position, du, dv;
     };
 
-    void store(const BezierPatch& patch, double size, int depth);
+    /// A part of a patch, in the frame of the ray, which runs along x.
+    struct Part {
+        int degreeU, degreeV;
+        ControlNet<4> net;
+        bool isPolynomial = false;  ///< all weights are 1
+        bool isOneToOne = false;    ///< rays meet it once at most, whatever their place
+        RayJet middle{};
+        double largestSlope = 0;  ///< along the ray by a parameter, without weights
+    };
+
+  private:
+    void store(Part part, double size, int depth);
 
     openvdb::BBoxd mBounds;
     std::vector<Part> mParts;

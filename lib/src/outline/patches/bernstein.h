@@ -1,5 +1,7 @@
 #pragma once
 
+#include "source/bernstein_basis.h"
+
 #include <array>
 #include <cstddef>
 #include <utility>
@@ -60,19 +62,6 @@ struct Gradient2 {
     double value = 0, du = 0, dv = 0;
 };
 Gradient2 evaluate(const Bernstein2& p, double u, double v);
-
-/// Bernstein's polynomials of a degree and their derivatives at one place.
-class BernsteinBasis {
-  public:
-    static constexpr int kMost = 96;  ///< the highest degree
-    BernsteinBasis(int degree, double t);
-    double value(int i) const { return mValue[static_cast<std::size_t>(i)]; }
-    double slope(int i) const { return mSlope[static_cast<std::size_t>(i)]; }
-
-  private:
-    std::array<double, kMost + 1> mValue;
-    std::array<double, kMost + 1> mSlope;
-};
 
 /// Appends the roots in (a, b) of the polynomial on [a, b] with these coefficients, ascending;
 /// as many, modulo 2, as the signs of its ends tell, where 0 counts as positive. Two roots closer

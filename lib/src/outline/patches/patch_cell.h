@@ -1,6 +1,6 @@
 #pragma once
 
-#include "outline/patches/control_net.h"
+#include "source/control_net.h"
 #include "outline/patches/vectors.h"
 #include "outline/patches/view_patch.h"
 

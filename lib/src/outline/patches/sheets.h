@@ -1,7 +1,7 @@
 #pragma once
 
 #include "outline/drawing/curve.h"
-#include "outline/patches/control_net.h"
+#include "source/control_net.h"
 #include "outline/patches/view_patch.h"
 
 #include <cstddef>

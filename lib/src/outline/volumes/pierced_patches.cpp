@@ -1,7 +1,7 @@
 #include "outline/volumes/pierced_patches.h"
 
 #include "outline/drawing/join_curves.h"
-#include "outline/patches/control_net.h"
+#include "source/control_net.h"
 #include "outline/patches/onto_zero.h"
 
 #include <bandvox/core/parallel.h>
