@@ -55,7 +55,7 @@ void runInBackground(const std::function<void(Progress&)>& work, const py::objec
         std::thread worker;
         const py::gil_scoped_release unlocked;
         worker = std::thread(std::move(task));
-        auto called = std::chrono::steady_clock::now();
+        auto called = std::chrono::steady_clock::now() - kBetweenCalls;
         while (done.wait_for(kBetweenLooks) != std::future_status::ready) {
             if (stopped) continue;
             const py::gil_scoped_acquire locked;
