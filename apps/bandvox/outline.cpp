@@ -51,7 +51,7 @@ const CommandTable& outlineTable() {
         const std::string page = "Page", lines = "Lines";
         CommandTable made{
             "outline",
-            "Draw free-form surfaces, volumes and meshes as lines (.svg, .pdf, .eps).",
+            "Draw free-form surfaces, volumes and meshes as lines (.svg, .pdf, .eps, .dxf).",
             "Draws the contours, boundaries, creases and intersections of Bézier and B-spline "
             "surfaces as Bézier curves, and the contours of volumes and of meshes, which are made "
             "volumes first. They are computed on the surfaces, never on polygons, and "
@@ -67,9 +67,9 @@ const CommandTable& outlineTable() {
                  'o',
                  "FILE",
                  "",
-                 "The .svg, .pdf or .eps file to write. Needed.",
+                 "The .svg, .pdf, .eps or .dxf file to write. Needed.",
                  page,
-                 {.endings = {".svg", ".pdf", ".eps"}}},
+                 {.endings = outlineExtensions()}},
                 {"page", 0, "SIZE",
                  formatNumber(options.width) + "x" + formatNumber(options.height),
                  "WxH in millimetres, or A3, A4, A5, letter, upright, or with -landscape.", page},
@@ -114,7 +114,7 @@ const CommandTable& outlineTable() {
                 {"no-hidden", 0, "", "", "Leave hidden lines away.", lines},
                 {"stroke", 0, "MM", formatNumber(stroke.width), "Width of visible lines.", lines},
                 {"stroke-color", 0, "COLOR", stroke.color,
-                 "Their colour, as in CSS; #rrggbb in .pdf and .eps.", lines},
+                 "Their colour, #rgb or #rrggbb; in an .svg also a word of CSS.", lines},
                 {"hidden-stroke", 0, "MM", formatNumber(stroke.hiddenWidth),
                  "Width of hidden lines.", lines},
                 {"hidden-color", 0, "COLOR", stroke.hiddenColor, "Their colour.", lines},
@@ -226,11 +226,20 @@ void readFill(const CommandLine& line, OutlineRequest& request) {
     }
 }
 
+// What a format cannot hold is said before anything is drawn.
+void requireWritable(const CommandLine& line, const OutlineRequest& request) {
+    const std::string extension = extensionOf(request.output);
+    if (extension == ".dxf" && request.options.fill != OutlineFillKind::None) {
+        line.fail("fill", "none for a .dxf, which has lines only");
+    }
+    if (extension != ".svg") requireHexColors(request.stroke);
+}
+
 OutlineRequest parseOutline(const CommandLine& line) {
     OutlineRequest request;
     request.inputs = readOutlineInputs(line);
     request.output = line.requiredText("output");
-    requireExtension(request.output, {".svg", ".pdf", ".eps"});
+    requireExtension(request.output, outlineExtensions());
     OutlineOptions& options = request.options;
     readPage(line, options);
     const double shorter = std::min(options.width, options.height);
@@ -246,6 +255,7 @@ OutlineRequest parseOutline(const CommandLine& line) {
     }
     readFill(line, request);
     options.light = line.vector("light", kAnyPlace).value_or(options.light);
+    if (!(options.light.length() > 0)) line.fail("light", "a direction, X,Y,Z, not all 0");
     request.kinds = line.choices("kinds", kOutlineKinds);
     options.hidden = !line.has("no-hidden");
     request.stroke.width = line.number("stroke", kSomeLength, request.stroke.width);
@@ -255,6 +265,7 @@ OutlineRequest parseOutline(const CommandLine& line) {
     request.stroke.hiddenColor = readStyle(line, "hidden-color", request.stroke.hiddenColor);
     request.stroke.dash = readStyle(line, "dash", request.stroke.dash);
     requireValid(request.stroke);
+    requireWritable(line, request);
     return request;
 }
 
@@ -305,13 +316,7 @@ void runOutline(const CommandLine& line) {
                     "the drawing is empty: it has no lines of these --kinds; expected some");
     }
     sayOutline(run, outline);
-    run.writeOutput(output, [&](AtomicFile& file) {
-        const std::string extension = extensionOf(request.output);
-        const auto write = extension == ".pdf"   ? writePdf
-                           : extension == ".eps" ? writeEps
-                                                 : writeSvg;
-        write(file, outline, request.stroke);
-    });
+    run.writeOutput(output, [&](AtomicFile& file) { writeOutline(file, outline, request.stroke); });
 }
 
 }  // namespace bandvox::app

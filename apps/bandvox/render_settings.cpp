@@ -64,6 +64,9 @@ CameraOptions readCamera(const OptionValues& values, double aspect) {
             values.number("fov", {.low = 0, .high = 180, .lowOpen = true, .highOpen = true}, 45);
         camera.focal = 0.5 * camera.aperture / std::tan(0.5 * degrees * std::numbers::pi / 180);
     }
+    if (values.has("frame") && camera.projection != Projection::Orthographic) {
+        values.fail("frame", "--camera orthographic beside it, whose view has this width");
+    }
     camera.frame = values.number("frame", {.low = 0}, camera.frame);
     return camera;
 }

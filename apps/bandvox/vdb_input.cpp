@@ -1,6 +1,7 @@
 #include "vdb_input.h"
 
 #include "command_run.h"
+#include "solid_input.h"
 
 #include <bandvox/grid/join_shards.h>
 #include <bandvox/source/read_mesh.h>
@@ -14,7 +15,7 @@ void requireVdb(const std::string& verb, const std::string& input) {
     if (!isShape(input) && extensionOf(input) == ".vdb") return;
     std::string message = "cannot ";
     message += verb + " '" + input + "': expected a .vdb file";
-    if (isShape(input) || isMeshFile(input)) {
+    if (isShape(input) || isMeshFile(input) || isPatchFile(input)) {
         message += "; convert it first: bandvox convert " + input + " -o " +
                    (isShape(input) ? input.substr(input.find(':') + 1)
                                    : std::filesystem::path(input).stem().string()) +

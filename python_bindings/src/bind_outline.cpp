@@ -23,7 +23,6 @@
 #include <words.h>
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -61,14 +60,9 @@ struct DrawnRegion {
 };
 
 void saveDrawing(const DrawingObject& drawing, const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    const std::size_t kind = choiceOf(extension, {".svg", ".pdf", ".eps"}, "the file's extension");
-    const auto write = kind == 0 ? writeSvg : kind == 1 ? writePdf : writeEps;
     const py::gil_scoped_release unlocked;
     AtomicFile file(path);
-    write(file, drawing.outline, drawing.stroke);
+    writeOutline(file, drawing.outline, drawing.stroke);
     file.commit();
 }
 
@@ -302,7 +296,7 @@ void bindDrawing(py::module_& module) {
                                "What is filled, a DrawnRegion each; they do not overlap.")
         .def("svg", &svgOf, "The text of an SVG file.")
         .def("save", &saveDrawing, py::arg("path"),
-             "Writes an .svg, .pdf or .eps file, whole or not at all.")
+             "Writes an .svg, .pdf, .eps or .dxf file, whole or not at all.")
         .def("_repr_svg_", &svgOf)
         .def("__repr__", [](const DrawingObject& self) {
             return "<bandvox.Drawing: " + std::to_string(self.outline.paths.size()) + " paths>";

@@ -5,11 +5,14 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <map>
 #include <regex>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace bandvox::app_test {
@@ -85,6 +88,8 @@ TEST(Outline, HasPagesAndKinds) {
                                {"--kinds", "edge"},
                                {"--stroke-color", "red;} svg {"},
                                {"--margin", "75"},
+                               {"--light", "0,0,0"},
+                               {"--frame", "3"},
                                {"--eye", "0.1,0,1"}}) {
         EXPECT_EQ(outline(wrong).status, 2) << wrong[1];
     }
@@ -119,6 +124,69 @@ TEST(Outline, WritesPdfAndEps) {
     EXPECT_NE(eps.find("%%BoundingBox: 0 0 567 426"), std::string::npos);
     EXPECT_EQ(outline("bad.pdf", {"--stroke-color", "red"}), 2);
     EXPECT_EQ(outline("bad.eps", {"--dash", "none"}), 2);
+}
+
+// The values that follow a group code in a DXF file, by code.
+std::vector<std::pair<int, std::string>> dxfGroups(const std::string& text) {
+    std::vector<std::pair<int, std::string>> groups;
+    std::istringstream lines(text);
+    for (std::string code, value; std::getline(lines, code) && std::getline(lines, value);) {
+        groups.emplace_back(std::stoi(code), value);
+    }
+    return groups;
+}
+
+TEST(Outline, WritesTheCurvesOfAnSvgAsSplinesOfADxf) {
+    const TemporaryFolder folder;
+    const auto outline = [&](const std::string& output, Names more) {
+        more.insert(more.begin(), {"outline", kTeapotFile, "-o", output, "--up", "0,0,1"});
+        return runBandvox(more, {.folder = folder.path()}).status;
+    };
+    ASSERT_EQ(outline("out.svg", {}), 0);
+    ASSERT_EQ(outline("out.dxf", {}), 0);
+    const std::string svg = readText(folder / "out.svg");
+    std::vector<double> expected;  // x, and y upward, of all control points
+    const std::regex path(" d=\"([^\"]*)\"");
+    for (std::sregex_iterator it(svg.begin(), svg.end(), path), end; it != end; ++it) {
+        std::string numbers = (*it)[1];
+        for (char& c : numbers) {
+            if (c == ',' || std::isalpha(static_cast<unsigned char>(c)) != 0) c = ' ';
+        }
+        std::istringstream words(numbers);
+        for (double x = 0, y = 0; words >> x >> y;) {
+            expected.push_back(x);
+            expected.push_back(150 - y);
+        }
+    }
+    std::vector<double> found;
+    std::vector<std::string> handles, layers;
+    std::map<std::string, int> splines;  // by layer
+    std::string type;
+    int closed = 0;
+    for (const auto& [code, value] : dxfGroups(readText(folder / "out.dxf"))) {
+        if (code == 0) type = value;
+        if (code == 5 && type != "SECTION") handles.push_back(value);
+        if (type == "LAYER" && code == 2) layers.push_back(value);
+        if (type != "SPLINE") continue;
+        if (code == 8) ++splines[value];
+        if (code == 70) closed += std::stoi(value) & 1;
+        if (code == 10 || code == 20) found.push_back(std::stod(value));
+    }
+    ASSERT_EQ(found.size(), expected.size());
+    ASSERT_GT(found.size(), 500U);
+    for (std::size_t i = 0; i < found.size(); ++i) ASSERT_NEAR(found[i], expected[i], 2e-4) << i;
+    EXPECT_EQ(static_cast<std::size_t>(closed), occurrences(svg, " Z\"/>"));
+    EXPECT_EQ(splines.size(), occurrences(svg, " class=\""));
+    for (const auto& [layer, count] : splines) {
+        EXPECT_EQ(std::count(layers.begin(), layers.end(), layer), 1) << layer;
+    }
+    EXPECT_EQ(splines.count("teapot 1 visible contour"), 1U);
+    std::sort(handles.begin(), handles.end());
+    EXPECT_EQ(std::adjacent_find(handles.begin(), handles.end()), handles.end());
+    // What it cannot hold is refused before anything is drawn.
+    EXPECT_EQ(outline("bad.dxf", {"--fill", "flat"}), 2);
+    EXPECT_EQ(outline("bad.dxf", {"--stroke-color", "red"}), 2);
+    EXPECT_FALSE(std::filesystem::exists(folder / "bad.dxf"));
 }
 
 TEST(Outline, ReadsFreeFormSurfacesOfObjFiles) {
@@ -324,6 +392,8 @@ TEST(Outline, RefusesBrokenFiles) {
         {"a.obj", replaced(kCylinder, "4 5 6", "4 5 7"), "point \"7\""},
         {"a.obj", replaced(kCylinder, "rat bezier", "cardinal"), "cardinal"},
         {"a.obj", replaced(kCylinder, "parm u 0 1", "parm u 1 0"), "descends"},
+        {"a.obj", replaced(kCylinder, "parm u 0 1", "parm u 0 0"), "nothing between"},
+        {"a.obj", replaced(kCylinder, "surf 0 1", "surf 0 0"), "expected it to rise"},
         {"a.obj", replaced(kCylinder, "parm u 0 1", "trim 0 1 1"), "trims"},
         {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "the mesh is flat", 4},
         {"a.obj", "surf 0 1 0 1 1 2 3 4\n", "line 1"},
@@ -339,6 +409,18 @@ TEST(Outline, RefusesBrokenFiles) {
         EXPECT_EQ(folder.contents(), Names{broken.name});
     }
     EXPECT_EQ(runBandvox({"outline", "/nowhere.bpt", "-o", "/tmp/out.svg"}).status, 3);
+}
+
+TEST(Outline, OfALineThatIsSeenAlongItselfIsEmpty) {
+    const TemporaryFolder folder;
+    writeText(folder / "line.bpt", "1\n1 1\n0 0 0\n0 0 1\n0 0 0\n0 0 1\n");
+    for (const std::string camera : {"perspective", "orthographic"}) {
+        const RunResult result = runBandvox(
+            {"outline", "line.bpt", "-o", "out.svg", "--camera", camera, "--from", "0,0,1"},
+            {.folder = folder.path()});
+        EXPECT_EQ(result.status, 4) << camera << ": " << result.err;
+        EXPECT_NE(result.err.find("the drawing is empty"), std::string::npos) << result.err;
+    }
 }
 
 TEST(Outline, DrawsAFlatPatchByItsBoundary) {

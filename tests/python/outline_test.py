@@ -85,13 +85,41 @@ def test_a_drawing_is_svg(drawing, tmp_path):
     root = xml.etree.ElementTree.fromstring(text)
     assert root.attrib["width"] == "200mm" and drawing.page == (200, 150)
     assert drawing._repr_svg_() == text
-    for name in ("teapot.svg", "teapot.pdf", "teapot.eps"):
+    for name in ("teapot.svg", "teapot.pdf", "teapot.eps", "teapot.DXF"):
         drawing.save(tmp_path / name)
     assert (tmp_path / "teapot.svg").read_text() == text
     assert (tmp_path / "teapot.pdf").read_bytes().startswith(b"%PDF")
-    assert len(list(tmp_path.iterdir())) == 3
-    with pytest.raises(bandvox.UsageError, match="'.png'.*'.svg'"):
+    assert len(list(tmp_path.iterdir())) == 4
+    with pytest.raises(bandvox.UsageError, match="teapot.png.*expected .svg"):
         drawing.save(tmp_path / "teapot.png")
+    assert len(list(tmp_path.iterdir())) == 4
+
+
+def test_a_dxf_has_the_same_curves(drawing, tmp_path):
+    ezdxf = pytest.importorskip("ezdxf")
+    drawing.save(tmp_path / "teapot.dxf")
+    document = ezdxf.readfile(tmp_path / "teapot.dxf")
+    audit = document.audit()
+    assert not audit.errors and not audit.fixes
+    assert document.units == ezdxf.units.MM
+    splines = list(document.modelspace())
+    assert {spline.dxftype() for spline in splines} == {"SPLINE"}
+    nets = [np.asarray(spline.control_points)[:, :2] for spline in splines]
+    assert len(splines) == len(drawing.paths)
+    for path in drawing.paths:
+        points = path.points * (1, -1) + (0, 150)
+        [spline] = [spline for spline, net in zip(splines, nets)
+                    if net.shape == points.shape and np.allclose(net, points, atol=2e-4)]
+        # A parameter of 1 to each cubic.
+        t = np.linspace(0, 1, 5)[:, np.newaxis]
+        a, b, c, d = points[:4]
+        curve = (1 - t)**3 * a + 3 * (1 - t)**2 * t * b + 3 * (1 - t) * t**2 * c + t**3 * d
+        tool = spline.construction_tool()
+        np.testing.assert_allclose([tuple(tool.point(s))[:2] for s in t[:, 0]], curve, atol=1e-3)
+        layer = document.layers.get(spline.dxf.layer)
+        assert spline.dxf.layer.endswith(("hidden " if path.hidden else "visible ") + path.kind)
+        assert layer.dxf.linetype == ("HIDDEN_LINES" if path.hidden else "Continuous")
+        assert spline.closed == path.closed
 
 
 def test_lines_are_bezier_curves(drawing):

@@ -222,4 +222,18 @@ TEST(Camera, FramesThePointsThatItIsGiven) {
     }
 }
 
+// A needle that points at the eye is seen from before its point.
+TEST(Camera, StaysAwayFromWhatPointsAtIt) {
+    const std::vector<Vec3d> needle{{0, 0, 9}, {0.1, 0, 0}, {-0.1, 0, 0}, {0, 0.1, 0}};
+    CameraOptions options;
+    options.from = Vec3d(0, 0, 1);
+    EXPECT_GE(Camera(options, 100, 100, needle).depth(needle[0]), 0.9 - 1e-12);
+    const std::vector<Vec3d> line{{0, 0, 9}, {0, 0, 0}};
+    for (const Projection projection : {Projection::Perspective, Projection::Orthographic}) {
+        options.projection = projection;
+        const Camera camera(options, 100, 100, line);
+        for (const Vec3d& point : line) EXPECT_GT(camera.depth(point), 0.8);
+    }
+}
+
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 namespace bandvox {
@@ -14,6 +15,8 @@ namespace {
 
 // Room left around a framed object, relative to its size in the picture.
 constexpr double kFrameMargin = 1.04;
+// Between the eye and a framed object, relative to the object's depth.
+constexpr double kLeastDistance = 0.1;
 
 // Directions closer to each other than this, as a sine, do not span a plane.
 constexpr double kSmallestSine = 1e-6;
@@ -113,6 +116,16 @@ Fit fit(std::span<const openvdb::Vec3d> points, int axis, double tangent, bool c
     return {0, std::max(high, -low)};
 }
 
+// The smallest and the largest forward distance of points from their center.
+std::pair<double, double> depthsOf(std::span<const openvdb::Vec3d> points) {
+    if (points.empty()) return {0, 0};
+    const auto isNearer = [](const openvdb::Vec3d& a, const openvdb::Vec3d& b) {
+        return a[2] < b[2];
+    };
+    const auto [near, far] = std::minmax_element(points.begin(), points.end(), isNearer);
+    return {(*near)[2], (*far)[2]};
+}
+
 }  // namespace
 
 void requireValid(const CameraOptions& options) {
@@ -161,15 +174,18 @@ Camera::Camera(const CameraOptions& options, int width, int height,
     const double tangent = perspective ? mHalfWidth / kFrameMargin : 0;
     const Fit across = fit(points, 0, tangent, centered);
     const Fit along = fit(points, 1, tangent * aspect, centered);
+    const auto [near, far] = depthsOf(points);
     double distance = 0;
     if (perspective) {
         distance = std::max(across.reach / tangent, along.reach / (tangent * aspect));
+        // What ends in a point towards the eye must not reach behind it.
+        distance = std::max(distance, kLeastDistance * (far - near) - near);
     } else {
-        const double fitted = std::max(across.reach, along.reach / aspect);
+        double fitted = std::max(across.reach, along.reach / aspect);
+        // A line that is seen along itself has no width.
+        if (!(fitted > 0)) fitted = far - near;
         mHalfWidth = options.frame > 0 ? 0.5 * options.frame : kFrameMargin * fitted;
-        for (const openvdb::Vec3d& point : points) {
-            distance = std::max(distance, fitted - point[2]);
-        }
+        distance = std::max(distance, fitted - near);
     }
     mHalfHeight = mHalfWidth * aspect;
     mEye = options.eye.value_or(lookat - distance * mForward + across.middle * mRight +

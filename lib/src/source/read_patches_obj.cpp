@@ -103,6 +103,12 @@ class ObjSurfaces {
         mNet.control.clear();
         mNet.range = {{{mLines.coordinate(1), mLines.coordinate(2)},
                        {mLines.coordinate(3), mLines.coordinate(4)}}};
+        for (const auto& [low, high] : mNet.range) {
+            if (!(low < high)) {
+                mLines.fail("has a surface whose parameter goes from " + std::to_string(low) +
+                            " to " + std::to_string(high) + "; expected it to rise");
+            }
+        }
         for (std::size_t i = 5; i < mLines.words().size(); ++i) takeControl(i);
     }
 
@@ -192,7 +198,11 @@ class ObjSurfaces {
             }
         }
         if (mModel.objects.empty()) mModel.objects.push_back(mFile.path.stem().string());
-        for (BezierPatch& patch : bezierPatches(net)) {
+        std::vector<BezierPatch> patches = bezierPatches(net);
+        if (patches.empty()) {
+            failSurface("nothing between its parameters, which its parms do not reach");
+        }
+        for (BezierPatch& patch : patches) {
             patch.object = static_cast<int>(mModel.objects.size()) - 1;
             mModel.patches.push_back(std::move(patch));
         }

@@ -25,6 +25,10 @@ struct StrokeOptions {
 /// that are none. Colours of lines may be words of CSS, for SVG.
 void requireValid(const StrokeOptions& options);
 
+/// Throws Error(ErrorKind::Usage) for colours of lines other than "#rgb" and "#rrggbb", which all
+/// formats but SVG need.
+void requireHexColors(const StrokeOptions& options);
+
 /// Writes a drawing as SVG: width and height in millimetres, with a matching viewBox. Each object
 /// is a group of layers, one for each kind of line that it has, visible and hidden ones apart, with
 /// a class for style sheets; ids do not depend on anything but the drawing. Lines are paths of
@@ -42,5 +46,18 @@ void writePdf(AtomicFile& file, const Outline& outline, const StrokeOptions& opt
 
 /// The same as Encapsulated PostScript, which has no layers.
 void writeEps(AtomicFile& file, const Outline& outline, const StrokeOptions& options = {});
+
+/// Writes the lines of a drawing as splines of a DXF file (AutoCAD 2004), a unit a millimetre, y
+/// upward, with the layers of a PDF. Widths are the nearest ones that the format has.
+///
+/// Throws as writePdf, also Error(ErrorKind::Usage) for a drawing with fills.
+void writeDxf(AtomicFile& file, const Outline& outline, const StrokeOptions& options = {});
+
+/// The extensions of the files above: .svg, .pdf, .eps, .dxf.
+const std::vector<std::string>& outlineExtensions();
+
+/// Writes a drawing as the extension of the file's target tells. Throws as the functions above,
+/// Error(ErrorKind::Usage) for another extension.
+void writeOutline(AtomicFile& file, const Outline& outline, const StrokeOptions& options = {});
 
 }  // namespace bandvox

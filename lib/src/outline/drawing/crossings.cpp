@@ -9,6 +9,12 @@
 namespace bandvox {
 namespace {
 
+// Parts of the page's size. Where a surface passes through a fold the two curves are in the same
+// place, and rounding must not tell which one is in front: a place too many does no harm.
+constexpr double kSameDepth = 1e-5;
+// Chords of curves that lead away from the eye are far from them in depth, not on the page.
+constexpr double kTouchingDepth = 0.02;
+
 bool occludes(const Curve& curve) {
     return curve.kind == OutlineKind::Contour || curve.kind == OutlineKind::Boundary;
 }
@@ -72,8 +78,7 @@ class CrossingSearch {
         if (alongA < 0 || alongA > 1 || alongB < 0 || alongB > 1) return;
         Spot onA{a, alongA, {}}, onB{b, alongB, {}};
         if (!settle(onA, onB) || areNeighbours(onA.segment, onB.segment)) return;
-        // Both are in the same place where a surface passes through a fold.
-        const double near = 1e-5 * mSize;
+        const double near = kSameDepth * mSize;
         if (occludes(second) && onB.at.z < onA.at.z + near) mPlaces[a.curve].push_back(onA.place());
         if (occludes(first) && onA.at.z < onB.at.z + near) mPlaces[b.curve].push_back(onB.place());
     }
@@ -189,7 +194,7 @@ class CrossingSearch {
                 std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / square, 0.0, 1.0);
             const double away = std::hypot(a.x + share * dx - p.x, a.y + share * dy - p.y);
             const double below = a.z + share * (b.z - a.z) - p.z;
-            if (away > reach || std::abs(below) > 0.02 * mSize) return;
+            if (away > reach || std::abs(below) > kTouchingDepth * mSize) return;
             mPlaces[segment.curve].push_back(segment.index + shareNear({&a, &b}, p, share));
         });
     }

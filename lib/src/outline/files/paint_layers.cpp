@@ -3,9 +3,11 @@
 #include <bandvox/core/error.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <string_view>
@@ -34,6 +36,10 @@ void requireValid(const StrokeOptions& options) {
         throw Error(ErrorKind::Usage, "there are no colours to fill with; expected one at least");
     }
     for (const std::string& color : options.fillColors) parsedColor(color);
+}
+
+void requireHexColors(const StrokeOptions& options) {
+    for (const std::string& color : {options.color, options.hiddenColor}) parsedColor(color);
 }
 
 std::string objectName(const Outline& outline, int object) {
@@ -141,10 +147,12 @@ std::vector<double> parsedDash(const std::string& dash) {
 
 void writeWhole(AtomicFile& file, const std::string& text) {
     std::ofstream stream = file.open();
+    errno = 0;
     stream.write(text.data(), static_cast<std::streamsize>(text.size()));
     stream.flush();
     if (stream) return;
-    throw Error(ErrorKind::Runtime, "\"" + file.target().string() + "\" could not be written");
+    throw Error(ErrorKind::Runtime, "cannot write " + file.target().string() + ": " +
+                                        (errno != 0 ? std::strerror(errno) : "unknown failure"));
 }
 
 }  // namespace bandvox

@@ -24,6 +24,8 @@ using openvdb::Vec3d;
 constexpr double kCell = 0.5;   // largest side of a cell, voxels
 constexpr int kFinest = 13;     // halvings of a patch at most
 constexpr int kPartsLevel = 3;  // halvings to the parts whose speed is bounded
+// Densities are read in single precision.
+constexpr double kRounding = 1e-6;
 
 /// A part of a patch in index coordinates.
 struct PatchBlock {
@@ -293,7 +295,7 @@ CurvePoint PiercingFinder::seen(int patch, double u, double v) {
 CurvePoint PiercingFinder::between(const CurvePoint& a, const CurvePoint& b, double share) {
     double u = a.u + share * (b.u - a.u), v = a.v + share * (b.v - a.v);
     const auto functionAt = [&](double x, double y) { return at(a.patch, x, y); };
-    if (!ontoZero(functionAt, u, v)) return share < 0.5 ? a : b;
+    if (!ontoZero(functionAt, u, v, kRounding)) return share < 0.5 ? a : b;
     return seen(a.patch, u, v);
 }
 

@@ -49,7 +49,13 @@ class VolumeReader {
     double foldAt(const CurvePoint& point) { return mContour.side(placeSeen(point)); }
 
     /// Where the line of sight at a place of the page enters the solid.
-    std::optional<Vec3d> firstAt(double x, double y) {
+    struct Entry {
+        Vec3d place;
+        double z;      ///< depth on the page
+        double zEven;  ///< nearer than this is as near as the entry, as densities are known
+    };
+    std::optional<Entry> firstAt(double x, double y) {
+        constexpr double kEven = 1e-3;  // voxels
         const Vec3d place = mSurface.view.placeOf({x, y, mMiddleDepth});
         const double far = mSurface.size + (place - mSurface.middle).length();
         const Vec3d start = mSurface.view.start(place, far);
@@ -57,10 +63,10 @@ class VolumeReader {
         const Ray ray{start, direction};
         const auto hit = mSurface.object->march().firstHit(ray, *mProbe, 4 * far);
         if (!hit) return std::nullopt;
-        return start + hit->t * direction;
+        const Vec3d entered = start + hit->t * direction;
+        const auto depthOf = [&](const Vec3d& p) { return mSurface.view.place(p)[2]; };
+        return Entry{entered, depthOf(entered), depthOf(entered + kEven * direction)};
     }
-
-    Vec3d seen(const Vec3d& place) const { return mSurface.view.place(place); }
 
     /// Of the angle between a light, world, and the normal out of the solid.
     double cosineAt(const Vec3d& place, const Vec3d& light) {
@@ -158,12 +164,11 @@ class VolumeSceneReader final : public CurveReader {
     SeenSurface seenAt(double x, double y) override {
         SeenSurface first = mPatches ? mPatches->seenAt(x, y) : SeenSurface();
         for (std::size_t k = 0; k < mVolumes.size(); ++k) {
-            const auto place = mVolumes[k].firstAt(x, y);
-            if (!place) continue;
-            const double depth = mVolumes[k].seen(*place)[2];
-            if (first.object >= 0 && depth >= first.z) continue;
-            first = {mFirstObject + static_cast<int>(k), depth,
-                     mVolumes[k].cosineAt(*place, mLight)};
+            const auto entry = mVolumes[k].firstAt(x, y);
+            // Of surfaces in the same place rounding does not choose.
+            if (!entry || (first.object >= 0 && entry->zEven >= first.z)) continue;
+            first = {mFirstObject + static_cast<int>(k), entry->z,
+                     mVolumes[k].cosineAt(entry->place, mLight)};
         }
         return first;
     }
