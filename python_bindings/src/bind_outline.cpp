@@ -327,6 +327,9 @@ void bindOutline(py::module_& module) {
             options.isophotes = isophotes;
             options.suggestive = suggestive;
             options.light = openvdb::Vec3d(light.data());
+            if (!(options.light.length() > 0)) {
+                throw Error(ErrorKind::Usage, "light: expected a direction that is not all 0");
+            }
             options.fill =
                 static_cast<OutlineFillKind>(choiceOf(fill, {"none", "flat", "toon"}, "fill"));
             options.tones = tones;

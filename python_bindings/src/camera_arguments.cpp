@@ -34,6 +34,12 @@ CameraOptions cameraOf(const CameraArguments& arguments, double aspect) {
     }
     options.aperture = arguments.aperture.value_or(options.aperture);
     options.focal = arguments.focal.value_or(options.focal);
+    if (arguments.frame.value_or(0) != 0 &&
+        options.projection != CameraOptions::Projection::Orthographic) {
+        throw Error(ErrorKind::Usage,
+                    "frame is the width of an orthographic view; expected "
+                    "camera='orthographic' beside it");
+    }
     options.frame = arguments.frame.value_or(options.frame);
     if (arguments.fov) {
         const double degrees = *arguments.fov;

@@ -114,3 +114,13 @@ def test_python_goes_on_while_pictures_are_drawn(torus):
         is_drawn.wait(1e-4)
     # With the interpreter's lock held, there would be a round between two pictures.
     assert rounds > 80
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+def test_a_forked_process_works_on():
+    before = bandvox.bandlimit("shape:cube", resolution=8, threads=1).metadata["bandvox_grid_volume"]
+    child = os.fork()
+    if child == 0:
+        again = bandvox.bandlimit("shape:cube", resolution=8, threads=1).metadata["bandvox_grid_volume"]
+        os._exit(0 if again == before else 1)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0

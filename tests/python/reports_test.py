@@ -186,6 +186,8 @@ def test_drawings_take_pages_by_name_and_volumes_by_theirs(torus):
     assert bandvox.outline(torus, page="A5-landscape", tolerance=0.1).page == (210, 148)
     by_volume = bandvox.outline(torus, iso="volume", tolerance=0.1)
     assert by_volume.svg() != bandvox.outline(torus, tolerance=0.1).svg()
+    with pytest.raises(bandvox.UsageError, match="light"):
+        bandvox.outline(torus, light=(0, 0, 0))
     for page in ("B5", (1, 2, 3), ("a", "b")):
         with pytest.raises(bandvox.UsageError, match="page"):
             bandvox.outline(torus, page=page)

@@ -188,6 +188,7 @@ def test_wrong_scenes_are_named(ball):
         ([ball, ball], {"shading": "phong"}, "one surface under one lamp"),
         (ball, {"width": 0}, "width"),
         (ball, {"seed": -1}, "seed is -1"),
+        (ball, {"frame": 2}, "camera='orthographic'"),
     ):
         with pytest.raises(bandvox.UsageError, match=words):
             bandvox.render(source, **{"width": 8, "height": 8, **options})
