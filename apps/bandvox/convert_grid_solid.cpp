@@ -13,11 +13,10 @@
 #include "volume_options.h"
 #include "words.h"
 
-#include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/grid/array_to_solid_grid.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/grid/grid_place.h>
-#include <bandvox/mesh/grid_surface.h>
+#include <bandvox/mesh/grid_to_density.h>
 #include <bandvox/source/array_source.h>
 #include <bandvox/source/shapes.h>
 
@@ -167,20 +166,8 @@ struct SolidDensity {
 
 // The density of a solid on a lattice of cubes.
 DensityResult densityOn(CommandRun& run, const GridSolid& solid,
-                        const openvdb::math::Transform& target, DensityOptions options) {
-    // The lattice upright, and its voxel 0 at the origin: then index i lies at i·Δ.
-    const double side = target.voxelSize()[0];
-    openvdb::Mat4d toLattice = target.baseMap()->getAffineMap()->getMat4().inverse();
-    toLattice.postScale(openvdb::Vec3d(side));
-    options.voxelSize = side;
-    const auto source =
-        makeGridSurface(solid.name, solid.grid, {solid.iso, toLattice}, run.progress());
-    DensityResult result = surfaceToDensity(*source, options, run.progress());
-    result.grid->setTransform(target.copy());
-    // On a turned lattice its last digits are others, and parts are summed up there.
-    result.metadata.gridVolume = densityIntegral(*result.grid);
-    setPlaceMetadata(*result.grid, placeMetadata(*solid.grid));
-    return result;
+                        const openvdb::math::Transform& target, const DensityOptions& options) {
+    return gridToDensity(solid.grid, target, {options, solid.iso, solid.name}, run.progress());
 }
 
 // A density of this library is one already.

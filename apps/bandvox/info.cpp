@@ -47,7 +47,7 @@ void writeReport(const CommandLine& line, const nlohmann::ordered_json& report,
 }
 
 void runMeshInfo(CommandRun& run, const CommandLine& line, const std::string& input) {
-    const nlohmann::ordered_json report = meshReport(run, input);
+    const nlohmann::ordered_json report = meshReport(input, run.progress());
     run.count("triangles", report["triangles"]);
     run.finish();
     writeReport(line, report, meshReportInWords(report));

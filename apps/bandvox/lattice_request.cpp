@@ -5,47 +5,12 @@
 
 #include <bandvox/core/error.h>
 #include <bandvox/grid/grid_place.h>
+#include <bandvox/resample/cubic_lattice.h>
 #include <bandvox/resample/resample_grid.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace bandvox::app {
-namespace {
-
-// How far sides and angles of voxels may be from those of cubes, relative.
-constexpr double kCubeTolerance = 1e-6;
-
-bool hasCubes(const openvdb::math::Transform& transform) {
-    if (!transform.isLinear()) return false;
-    const auto map = transform.baseMap();
-    const openvdb::Vec3d axes[] = {map->applyJacobian({1, 0, 0}), map->applyJacobian({0, 1, 0}),
-                                   map->applyJacobian({0, 0, 1})};
-    const double square = axes[0].lengthSqr();
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            const double expected = i == j ? square : 0;
-            if (std::abs(axes[i].dot(axes[j]) - expected) > kCubeTolerance * square) return false;
-        }
-    }
-    return true;
-}
-
-// Cubes of this side along the grid's axes; of axes that are no right angle apart, the second and
-// the third as near to them as can be.
-openvdb::math::Transform::Ptr cubesAlong(const openvdb::GridBase& grid, double side) {
-    openvdb::Mat4d matrix = uniformLattice(grid, side)->baseMap()->getAffineMap()->getMat4();
-    openvdb::Vec3d axes[3];
-    for (int i = 0; i < 3; ++i) {
-        axes[i] = {matrix(i, 0), matrix(i, 1), matrix(i, 2)};
-        for (int j = 0; j < i; ++j) axes[i] -= axes[i].dot(axes[j]) / (side * side) * axes[j];
-        axes[i] *= side / axes[i].length();
-        for (int k = 0; k < 3; ++k) matrix(i, k) = axes[i][k];
-    }
-    return openvdb::math::Transform::createLinearTransform(matrix);
-}
-
-}  // namespace
 
 LatticeRequest readLattice(const CommandLine& line) {
     LatticeRequest lattice;
@@ -104,7 +69,7 @@ openvdb::math::Transform::Ptr targetFor(const openvdb::GridBase& grid,
 openvdb::math::Transform::Ptr cubesFor(const openvdb::GridBase& grid, const LatticeRequest& request,
                                        const openvdb::GridBase::ConstPtr& onto) {
     auto target = targetFor(grid, request, onto);
-    if (hasCubes(*target)) return target;
+    if (hasCubicVoxels(*target)) return target;
     if (onto && request.onto) {
         throw Error(
             ErrorKind::Usage,
@@ -113,7 +78,7 @@ openvdb::math::Transform::Ptr cubesFor(const openvdb::GridBase& grid, const Latt
                 "another one, or --voxel-size");
     }
     const openvdb::Vec3d size = target->voxelSize();
-    return cubesAlong(grid, std::min({size[0], size[1], size[2]}));
+    return cubicLattice(grid, std::min({size[0], size[1], size[2]}));
 }
 
 }  // namespace bandvox::app

@@ -6,7 +6,6 @@
 #include <bandvox/core/error.h>
 #include <bandvox/source/close_mesh.h>
 #include <bandvox/source/mesh_source.h>
-#include <bandvox/source/read_mesh.h>
 #include <bandvox/source/unite_shells.h>
 
 #include <algorithm>
@@ -54,9 +53,9 @@ void addClosing(const CloseMeshReport& closing, Json& report) {
 }
 
 // Makes a solid of it, as far as that goes.
-void addSolid(CommandRun& run, Mesh mesh, Json& report) {
-    ClosedMesh closed = closeMesh(
-        std::move(mesh), {.requireSolid = false, .capping = Capping::Sensible}, run.progress());
+void addSolid(Mesh mesh, Json& report, Progress& progress) {
+    ClosedMesh closed =
+        closeMesh(std::move(mesh), {.requireSolid = false, .capping = Capping::Sensible}, progress);
     addClosing(closed.report, report);
     if (!closed.report.problem.empty()) {
         report["problem"] = closed.report.problem;
@@ -64,7 +63,7 @@ void addSolid(CommandRun& run, Mesh mesh, Json& report) {
     }
     // What a soup encloses only its winding numbers tell.
     if (!closed.soup.triangles.empty()) return;
-    UnitedMesh united = uniteShells(std::move(closed.mesh), run.progress());
+    UnitedMesh united = uniteShells(std::move(closed.mesh), progress);
     report["triangle_meetings"] = united.report.meetings;
     report["triangles_inside"] = united.report.trianglesDropped;
     for (const std::string& warning : united.report.warnings) {
@@ -91,11 +90,8 @@ std::string holesInWords(const Json& holes) {
 
 }  // namespace
 
-Json meshReport(CommandRun& run, const std::string& input) {
-    MeshFile file = readMesh(input, run.progress());
+Json meshReport(MeshFile file, Progress& progress) {
     Json report;
-    report["file"] = input;
-    report["file_bytes"] = std::filesystem::file_size(input);
     report["points"] = file.mesh.points.size();
     report["triangles"] = file.mesh.triangles.size();
     report["objects"] = file.objects;
@@ -108,11 +104,20 @@ Json meshReport(CommandRun& run, const std::string& input) {
     report["closed"] = false;
     report["problem"] = nullptr;
     try {
-        addSolid(run, std::move(file.mesh), report);
+        addSolid(std::move(file.mesh), report, progress);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::Input && error.kind() != ErrorKind::Result) throw;
         report["problem"] = error.what();
     }
+    return report;
+}
+
+Json meshReport(const std::string& input, Progress& progress) {
+    MeshFile file = readMesh(input, progress);
+    Json report;
+    report["file"] = input;
+    report["file_bytes"] = std::filesystem::file_size(input);
+    report.update(meshReport(std::move(file), progress));
     return report;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "command_run.h"
+#include <bandvox/core/progress.h>
+#include <bandvox/source/read_mesh.h>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -18,7 +19,10 @@ namespace bandvox::app {
 /// comes of it), these four null if none does, closed (true if nothing had to be closed, turned or
 /// united), warnings, and problem (why no solid comes of it, else null). Throws
 /// Error(ErrorKind::Input) if the file cannot be read.
-nlohmann::ordered_json meshReport(CommandRun& run, const std::string& input);
+nlohmann::ordered_json meshReport(const std::string& input, Progress& progress);
+
+/// The same of a mesh that has been read, without file and file_bytes.
+nlohmann::ordered_json meshReport(MeshFile file, Progress& progress);
 
 /// The same for people.
 std::string meshReportInWords(const nlohmann::ordered_json& report);

@@ -14,7 +14,6 @@
 #include <nlohmann/json.hpp>
 
 #include <map>
-#include <numbers>
 #include <utility>
 
 namespace bandvox::app {
@@ -43,9 +42,10 @@ ObjectRequest readObject(const OptionValues& values, const std::string& file) {
     request.grid = values.text("grid");
     request.colors = values.text("colors");
     request.temperatures = values.text("temperature");
-    request.scale = values.number("scale", {.low = 0, .high = 1e30, .lowOpen = true}, 1);
-    request.rotate = values.vector("rotate", kAnyPlace).value_or(request.rotate);
-    request.translate = values.vector("translate", kAnyPlace).value_or(request.translate);
+    Placement& placement = request.placement;
+    placement.scale = values.number("scale", {.low = 0, .high = 1e30, .lowOpen = true}, 1);
+    placement.rotate = values.vector("rotate", kAnyPlace).value_or(placement.rotate);
+    placement.translate = values.vector("translate", kAnyPlace).value_or(placement.translate);
     SceneObject& object = request.object;
     object.kind = static_cast<SceneObject::Kind>(values.choice("mode", kModes, 0));
     if (values.has("iso")) object.iso = values.number("iso", {}, 0);
@@ -198,26 +198,6 @@ void readSceneFile(const CommandLine& line, const std::string& path,
 // What a file of a scene holds, read once.
 using OpenFiles = std::map<std::string, openvdb::GridPtrVec>;
 
-// The same grid elsewhere; its voxels are shared.
-template <typename Grid>
-void place(std::shared_ptr<const Grid>& grid, const ObjectRequest& request) {
-    if (!grid) return;
-    const auto transform = grid->transform().copy();
-    try {
-        transform->postScale(request.scale);
-    } catch (const openvdb::Exception&) {
-        throw Error(ErrorKind::Usage, "a scale of " + formatNumber(request.scale) +
-                                          " makes the voxels of '" + request.file +
-                                          "' smaller than OpenVDB takes");
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-        transform->postRotate(request.rotate[axis] * std::numbers::pi / 180,
-                              openvdb::math::Axis(axis));
-    }
-    transform->postTranslate(request.translate);
-    grid = grid->copyReplacingTransform(transform);
-}
-
 void loadGrids(CommandRun& run, const ObjectRequest& request, const std::string& file,
                OpenFiles& files, SceneObject& object) {
     if (!files.contains(file)) {
@@ -234,13 +214,7 @@ void loadGrids(CommandRun& run, const ObjectRequest& request, const std::string&
     if (isVolume && request.temperatures != "none") {
         object.temperatures = findFloatGrid(grids, request.temperatures, "temperature", file);
     }
-    const bool stays = request.scale == 1 && request.rotate == openvdb::Vec3d(0.0) &&
-                       request.translate == openvdb::Vec3d(0.0);
-    if (!stays) {
-        place(object.grid, request);
-        place(object.colors, request);
-        place(object.temperatures, request);
-    }
+    place(object, request.placement);
     run.say("read     " + file + ": grid '" + object.grid->getName() + "', " +
             formatCount(static_cast<std::int64_t>(object.grid->activeVoxelCount()), "active voxel",
                         "active voxels") +

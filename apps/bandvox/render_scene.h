@@ -4,6 +4,7 @@
 #include "command_run.h"
 #include "option_table.h"
 
+#include <bandvox/render/placement.h>
 #include <bandvox/render/scene.h>
 
 #include <optional>
@@ -18,10 +19,8 @@ struct ObjectRequest {
     std::optional<std::string> grid;
     std::optional<std::string> colors;        ///< name of the grid of colours; "none" for none
     std::optional<std::string> temperatures;  ///< name of the grid of temperatures; the same
-    double scale = 1;                         ///< about the world's origin, before the rest
-    openvdb::Vec3d rotate{0, 0, 0};           ///< degrees about x, then y, then z
-    openvdb::Vec3d translate{0, 0, 0};        ///< world units, after the rest
-    SceneObject object;                       ///< without its grids
+    Placement placement;
+    SceneObject object;  ///< without its grids
 };
 
 /// A scene as the user describes it.

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -21,16 +20,12 @@
 namespace bandvox::app {
 namespace {
 
-constexpr int kDefaultSize = 160;
-constexpr int kLeastSize = 16;
-constexpr int kMostSize = 512;
-
 struct ViewRequest {
     std::string input;
     std::string output;
     std::optional<std::string> grid, title;
     std::optional<double> iso;
-    int size = kDefaultSize;
+    int size = kViewSize;
 };
 
 ViewRequest parseView(const CommandLine& line) {
@@ -42,7 +37,7 @@ ViewRequest parseView(const CommandLine& line) {
     request.grid = line.text("grid");
     request.title = line.text("title");
     if (line.has("iso")) request.iso = line.number("iso", {}, 0);
-    request.size = line.wholeNumber("size", kLeastSize, kMostSize, kDefaultSize);
+    request.size = line.wholeNumber("size", kLeastViewSize, kMostViewSize, kViewSize);
     return request;
 }
 
@@ -56,10 +51,7 @@ ViewPage summarize(CommandRun& run, const ViewRequest& request) {
             chooseFloatGrid(readGrids(request.input), request.grid, "density", request.input);
     }
     page.title = request.title.value_or(page.file);
-    page.texture = gridToTexture(*page.grid, request.size, run.progress());
-    page.histogram = valueHistogram(*page.grid, run.progress());
-    page.spectrum = radialSpectrum(*page.grid, 200, run.progress());
-    page.iso = viewIso(*page.grid, request.iso, page.texture);
+    summarizeGrid(page, request.iso, request.size, run.progress());
 
     const VolumeTexture& texture = page.texture;
     const double coarsest = std::max({texture.spacing[0], texture.spacing[1], texture.spacing[2]});
@@ -71,26 +63,6 @@ ViewPage summarize(CommandRun& run, const ViewRequest& request) {
     run.count("samples", texture.values.size());
     run.count("spectrum_blocks", page.spectrum.blocks);
     return page;
-}
-
-void warnOfDoubts(CommandRun& run, const ViewPage& page) {
-    std::vector<std::string> warnings;
-    const VolumeTexture& texture = page.texture;
-    if (!(texture.low < page.iso && page.iso < texture.high)) {
-        warnings.push_back("no surface is seen: the iso-value is " + formatNumber(page.iso) +
-                           ", and the values shown go from " + formatNumber(texture.low) + " to " +
-                           formatNumber(texture.high));
-    }
-    if (texture.notFiniteValues > 0) {
-        warnings.push_back(formatCount(texture.notFiniteValues, "value is not finite, and is",
-                                       "values are not finite, and are") +
-                           " shown as background");
-    }
-    if (!page.grid->transform().isLinear()) {
-        warnings.emplace_back(
-            "the grid's transform is not linear; its shape is shown as if it was");
-    }
-    run.warn(warnings, ErrorKind::Result);
 }
 
 void writePage(AtomicFile& file, const std::string& html) {
@@ -129,7 +101,7 @@ const CommandTable& viewTable() {
             {"iso", 0, "D", "as stored, else 0.5",
              "Value that is the surface at first; of a level set the distance, by default 0.",
              "Volume"},
-            {"size", 0, "N", std::to_string(kDefaultSize),
+            {"size", 0, "N", std::to_string(kViewSize),
              "Samples along the longest side, 16 to 512; fewer if the grid has fewer voxels.",
              "Volume"},
         },
@@ -148,7 +120,7 @@ void runView(const CommandLine& line) {
     CommandRun run(line);
     AtomicFile output(request.output);
     const ViewPage page = summarize(run, request);
-    warnOfDoubts(run, page);
+    run.warn(doubtsAbout(page), ErrorKind::Result);
     run.writeOutput(output,
                     [&](AtomicFile& file) { writePage(file, viewHtml(page, run.progress())); });
 }

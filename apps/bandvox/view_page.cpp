@@ -3,6 +3,7 @@
 #include "grid_report.h"
 #include "report_words.h"
 #include "view_template.h"
+#include "words.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/version.h>
@@ -154,6 +155,34 @@ double viewIso(const openvdb::FloatGrid& grid, const std::optional<double>& aske
     const double iso = stored ? stored->value() : 0.5;
     if (texture.low < iso && iso < texture.high) return iso;
     return 0.5 * (static_cast<double>(texture.low) + texture.high);
+}
+
+void summarizeGrid(ViewPage& page, const std::optional<double>& asked, int size,
+                   Progress& progress) {
+    constexpr int kMostBlocks = 200;
+    page.texture = gridToTexture(*page.grid, size, progress);
+    page.histogram = valueHistogram(*page.grid, progress);
+    page.spectrum = radialSpectrum(*page.grid, kMostBlocks, progress);
+    page.iso = viewIso(*page.grid, asked, page.texture);
+}
+
+std::vector<std::string> doubtsAbout(const ViewPage& page) {
+    std::vector<std::string> doubts;
+    const VolumeTexture& texture = page.texture;
+    if (!(texture.low < page.iso && page.iso < texture.high)) {
+        doubts.push_back("no surface is seen: the iso-value is " + formatNumber(page.iso) +
+                         ", and the values shown go from " + formatNumber(texture.low) + " to " +
+                         formatNumber(texture.high));
+    }
+    if (texture.notFiniteValues > 0) {
+        doubts.push_back(formatCount(texture.notFiniteValues, "value is not finite, and is",
+                                     "values are not finite, and are") +
+                         " shown as background");
+    }
+    if (!page.grid->transform().isLinear()) {
+        doubts.emplace_back("the grid's transform is not linear; its shape is shown as if it was");
+    }
+    return doubts;
 }
 
 nlohmann::ordered_json viewHeader(const ViewPage& page) {

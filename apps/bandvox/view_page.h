@@ -7,8 +7,14 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace bandvox::app {
+
+/// Samples along the longest side of what a page shows.
+constexpr int kViewSize = 160;
+constexpr int kLeastViewSize = 16;
+constexpr int kMostViewSize = 512;
 
 /// What a page shows of a grid.
 struct ViewPage {
@@ -25,6 +31,14 @@ struct ViewPage {
 /// set, else 0.5, or the middle of the texture's values if they do not reach that.
 double viewIso(const openvdb::FloatGrid& grid, const std::optional<double>& asked,
                const VolumeTexture& texture);
+
+/// Fills in all of a page but its words and its grid, of which the rest is made. `asked`: the
+/// iso-value; `size`: samples along the longest side, kLeastViewSize to kMostViewSize.
+void summarizeGrid(ViewPage& page, const std::optional<double>& asked, int size,
+                   Progress& progress);
+
+/// What a user should know of a page, in words.
+std::vector<std::string> doubtsAbout(const ViewPage& page);
 
 /// What the page says in words and numbers. Keys: version, title, file, iso, inside ("above" or
 /// "below" the iso-value), background, texture {size, low, high, spacing, first (index

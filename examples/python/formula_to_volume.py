@@ -22,7 +22,7 @@ def gyroid(x: Doubles, y: Doubles, z: Doubles) -> Doubles:
 
 def main(folder: pathlib.Path) -> None:
     density = bandvox.bandlimit(gyroid, resolution=64, bounds=((-1, -1, -1), (1, 1, 1)),
-                                oversample=4, tolerance=0.02)
+                                oversample=4, tolerance=0.05)
     density.write(folder / "gyroid.vdb")
     bandvox.render(density, width=240, height=240).write(folder / "gyroid.png")
     print(f"walls fill {density.metadata['bandvox_grid_volume'] / (4 / 3 * np.pi):.3f} of the ball")

@@ -1,11 +1,11 @@
 """What the compiled module is to type checkers; stubs_test.py holds it against the module."""
 
-from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from .types import Doubles, Floats, Path, Progress, Source, Voxel
+from .types import Doubles, Field, Floats, Iso, Path, Progress, Source, Voxel
 
 __version__: str
 
@@ -38,13 +38,17 @@ class Grid:
     @property
     def bounds(self) -> Optional[Tuple[Voxel, Voxel]]: ...
     @property
+    def grid_class(self) -> str: ...
+    @property
     def active_voxel_count(self) -> int: ...
     @property
     def memory_bytes(self) -> int: ...
     def to_array(self, bounds: Optional[Sequence[npt.ArrayLike]] = None) -> Tuple[Floats, Voxel]: ...
     def blocks(self) -> Iterator[Tuple[Voxel, Floats]]: ...
     def copy(self) -> Grid: ...
-    def write(self, path: Path, *, half: bool = False) -> None: ...
+    def write(
+        self, path: Path, *, half: bool = False, compression: str = "blosc"
+    ) -> None: ...
 
 class VectorGrid:
     name: str
@@ -68,13 +72,51 @@ class VectorGrid:
     @property
     def bounds(self) -> Optional[Tuple[Voxel, Voxel]]: ...
     @property
+    def grid_class(self) -> str: ...
+    @property
     def active_voxel_count(self) -> int: ...
     @property
     def memory_bytes(self) -> int: ...
     def to_array(self, bounds: Optional[Sequence[npt.ArrayLike]] = None) -> Tuple[Floats, Voxel]: ...
     def blocks(self) -> Iterator[Tuple[Voxel, Floats]]: ...
     def copy(self) -> VectorGrid: ...
-    def write(self, path: Path, *, half: bool = False) -> None: ...
+    def write(
+        self, path: Path, *, half: bool = False, compression: str = "blosc"
+    ) -> None: ...
+
+class MaskGrid:
+    name: str
+    @staticmethod
+    def from_array(
+        array: npt.ArrayLike,
+        *,
+        origin: Optional[npt.ArrayLike] = None,
+        voxel_size: Optional[npt.ArrayLike] = None,
+        transform: Optional[npt.ArrayLike] = None,
+        background: float = 0.0,
+        tolerance: float = 0.0,
+        name: str = "density",
+    ) -> MaskGrid: ...
+    @property
+    def transform(self) -> Doubles: ...
+    @property
+    def voxel_size(self) -> Tuple[float, float, float]: ...
+    @property
+    def metadata(self) -> Dict[str, Any]: ...
+    @property
+    def bounds(self) -> Optional[Tuple[Voxel, Voxel]]: ...
+    @property
+    def grid_class(self) -> str: ...
+    @property
+    def active_voxel_count(self) -> int: ...
+    @property
+    def memory_bytes(self) -> int: ...
+    def to_array(self, bounds: Optional[Sequence[npt.ArrayLike]] = None) -> Tuple[npt.NDArray[np.bool_], Voxel]: ...
+    def blocks(self) -> Iterator[Tuple[Voxel, npt.NDArray[np.bool_]]]: ...
+    def copy(self) -> MaskGrid: ...
+    def write(
+        self, path: Path, *, half: bool = False, compression: str = "blosc"
+    ) -> None: ...
 
 class Mesh:
     def __init__(
@@ -104,6 +146,8 @@ class Reconstruction:
     def value(self, points: npt.ArrayLike) -> Doubles: ...
     def gradient(self, points: npt.ArrayLike) -> Doubles: ...
     def hessian(self, points: npt.ArrayLike) -> Doubles: ...
+
+AnyGrid = TypeVar("AnyGrid", Grid, VectorGrid)
 
 class Patches:
     def __init__(
@@ -161,10 +205,14 @@ class Surface:
     def gradient(self, x: npt.ArrayLike, y: npt.ArrayLike, *, column: int = 0) -> Doubles: ...
     def normals(self, x: npt.ArrayLike, y: npt.ArrayLike, *, column: int = 0) -> Doubles: ...
     def curvature(self, x: npt.ArrayLike, y: npt.ArrayLike, *, column: int = 0) -> Doubles: ...
-    def sample(self, samples: int = 257) -> Doubles: ...
+    def sample(
+        self, samples: int = 257, *, quantities: Sequence[str] = ["value"]
+    ) -> Doubles: ...
     def patches(self) -> Patches: ...
     def mesh(self, samples: int = 257) -> Mesh: ...
-    def save(self, path: Path, *, samples: int = 257) -> None: ...
+    def save(
+        self, path: Path, *, samples: int = 257, quantities: Sequence[str] = []
+    ) -> None: ...
     def density(
         self,
         *,
@@ -185,6 +233,8 @@ class Surface:
     @property
     def columns(self) -> int: ...
     @property
+    def column_names(self) -> List[str]: ...
+    @property
     def tension(self) -> float: ...
 
 class Volume:
@@ -196,17 +246,28 @@ class Volume:
         name: str = "density",
         column: int = 0,
         columns: int = 1,
+        quantity: str = "value",
         resolution: int = 256,
         voxel_size: float = 0.0,
         threads: int = 0,
         progress: Optional[Progress] = None,
     ) -> Any: ...
+    def grids(
+        self,
+        *,
+        resolution: int = 256,
+        voxel_size: float = 0.0,
+        threads: int = 0,
+        progress: Optional[Progress] = None,
+    ) -> List[Any]: ...
     @property
     def bounds(self) -> Tuple[Tuple[float, float, float], Tuple[float, float, float]]: ...
     @property
     def reach(self) -> float: ...
     @property
     def columns(self) -> int: ...
+    @property
+    def column_names(self) -> List[str]: ...
     @property
     def largest(self) -> float: ...
 
@@ -217,42 +278,86 @@ def bandlimit(
     voxel_size: float = 0.0,
     cutoff: float = 0.16,
     order: float = 2.0,
-    tolerance: float = 0.0001,
+    tolerance: Optional[float] = None,
     tile: int = 0,
     clamp: bool = False,
-    iso: float = 0.5,
+    iso: Iso = 0.5,
     route: str = "auto",
     overlap: str = "union",
     oversample: Optional[int] = None,
+    base: Optional[float] = None,
     bounds: Optional[npt.ArrayLike] = None,
+    shard: Optional[Sequence[int]] = None,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Grid: ...
+def bandlimit_grid(
+    grid: Union[Grid, MaskGrid],
+    *,
+    threshold: Union[float, Sequence[float], None] = None,
+    resolution: int = 0,
+    voxel_size: float = 0.0,
+    factor: float = 0.0,
+    onto: Union[Grid, VectorGrid, MaskGrid, None] = None,
+    cutoff: float = 0.16,
+    order: float = 2.0,
+    tolerance: Optional[float] = None,
+    tile: int = 0,
+    clamp: bool = False,
+    iso: Iso = 0.5,
+    shard: Optional[Sequence[int]] = None,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Grid: ...
+def bandlimit_points(
+    source: Union[Path, npt.ArrayLike],
+    *,
+    radius: Optional[npt.ArrayLike] = None,
+    normals: Optional[npt.ArrayLike] = None,
+    points: str = "auto",
+    resolution: int = 256,
+    voxel_size: float = 0.0,
+    cutoff: float = 0.16,
+    order: float = 2.0,
+    tolerance: Optional[float] = None,
+    tile: int = 0,
+    clamp: bool = False,
+    iso: Iso = 0.5,
+    shard: Optional[Sequence[int]] = None,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Grid: ...
 def colors(
-    source: Union[Path, Mesh],
+    source: Union[Path, Mesh, Surface],
     density: Grid,
     *,
     cutoff: float = 0.16,
     order: float = 2.0,
+    tile: int = 0,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> VectorGrid: ...
 def compare(
-    a: Grid,
-    b: Grid,
+    a: Union[Grid, Mesh, Path],
+    b: Union[Grid, Mesh, Path],
     *,
-    surfaces: bool = True,
-    iso: Optional[float] = None,
+    only: Optional[str] = None,
+    iso: Optional[Iso] = None,
+    distance_tolerance: float = 0.1,
+    cuts: int = 1,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Dict[str, Any]: ...
 def detail_levels(
-    grid: Grid,
+    grid: AnyGrid,
     levels: int,
     *,
+    cutoff: float = 0.16,
+    order: float = 2.0,
+    tolerance: float = 0.0001,
     threads: int = 0,
     progress: Optional[Progress] = None,
-) -> List[Grid]: ...
+) -> List[AnyGrid]: ...
 def fit(
     places: Union[Path, npt.ArrayLike],
     values: Optional[npt.ArrayLike] = None,
@@ -280,22 +385,30 @@ def fit_volume(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Volume: ...
+def info(
+    source: Union[Path, Grid, VectorGrid, MaskGrid, Mesh],
+    *,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Dict[str, Any]: ...
 def iso_of_volume(
     grid: Grid, volume: float, *, progress: Optional[Progress] = None
 ) -> Tuple[float, float]: ...
+def join_shards(grids: Iterable[AnyGrid]) -> AnyGrid: ...
 def merge(
-    grids: Iterable[Grid],
+    grids: Iterable[Union[Grid, MaskGrid]],
     *,
     operation: str = "union",
     weights: Sequence[float] = [],
     clamp: bool = False,
+    resample: bool = False,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Grid: ...
 def outline(
     source: Union[Path, Patches, Grid, Sequence[Union[Path, Patches, Grid]]],
     *,
-    page: Sequence[float] = [200.0, 150.0],
+    page: Union[Sequence[float], str] = [200.0, 150.0],
     margin: Optional[float] = None,
     tolerance: float = 0.01,
     crease_angle: float = 5.0,
@@ -310,11 +423,13 @@ def outline(
     lookat: Optional[npt.ArrayLike] = None,
     up: Optional[npt.ArrayLike] = None,
     from_: Optional[npt.ArrayLike] = None,
-    camera: str = "perspective",
-    focal: float = 50.0,
-    aperture: float = 41.2136,
-    frame: float = 0.0,
-    iso: Optional[float] = None,
+    camera: Optional[str] = None,
+    camera_file: Optional[Path] = None,
+    focal: Optional[float] = None,
+    aperture: Optional[float] = None,
+    fov: Optional[float] = None,
+    frame: Optional[float] = None,
+    iso: Optional[Iso] = None,
     isophotes: Sequence[float] = [],
     suggestive: Optional[float] = None,
     light: Sequence[float] = [-0.4, 0.7, 0.8],
@@ -325,42 +440,73 @@ def outline(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Drawing: ...
+def read_array(
+    path: Path,
+    *,
+    channel: str = "",
+    series: str = "",
+    spacing: Optional[npt.ArrayLike] = None,
+    origin: Optional[npt.ArrayLike] = None,
+    space: Optional[str] = None,
+    background: float = 0.0,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Grid: ...
 def read_vdb(path: Path) -> List[Any]: ...
 def resample(
-    grid: Grid,
+    grid: AnyGrid,
     *,
+    resolution: int = 0,
     factor: float = 0.0,
     voxel_size: float = 0.0,
-    onto: Union[Grid, VectorGrid, None] = None,
+    onto: Union[Grid, VectorGrid, MaskGrid, None] = None,
     filter: bool = True,
     cutoff: float = 0.16,
     order: float = 2.0,
     tolerance: float = 0.0001,
     threads: int = 0,
     progress: Optional[Progress] = None,
-) -> Grid: ...
+) -> AnyGrid: ...
 def shape_names() -> List[str]: ...
 def thread_count() -> int: ...
+def to_fog(
+    grid: Grid,
+    *,
+    iso: Optional[Iso] = None,
+    band: float = 3.0,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Grid: ...
 def to_level_set(
     grid: Grid,
     *,
-    iso: Optional[float] = None,
-    half_width: float = 3.0,
+    iso: Optional[Iso] = None,
+    band: float = 3.0,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Grid: ...
 def to_mesh(
     grid: Grid,
     *,
-    iso: Optional[float] = None,
+    iso: Optional[Iso] = None,
     adaptivity: float = 0.0,
     tolerance: float = 0.001,
     colors: Optional[VectorGrid] = None,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Mesh: ...
+def view(
+    path: Path,
+    grid: Grid,
+    *,
+    title: Optional[str] = None,
+    iso: Optional[float] = None,
+    size: int = 160,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> None: ...
 def voxelize(
-    source: Source,
+    source: Union[Path, Mesh, Sequence[npt.ArrayLike], Field],
     *,
     resolution: int = 256,
     voxel_size: float = 0.0,
@@ -368,39 +514,45 @@ def voxelize(
     fraction: bool = False,
     axis: str = "x",
     backend: str = "auto",
+    gpu_method: str = "bits",
+    as_: str = "density",
     bounds: Optional[npt.ArrayLike] = None,
     threads: int = 0,
     progress: Optional[Progress] = None,
-) -> Grid: ...
+) -> Any: ...
+def write_array(
+    path: Path,
+    grid: Union[Grid, MaskGrid],
+    *,
+    type: Optional[str] = None,
+    range: Optional[Sequence[float]] = None,
+    box: Optional[npt.ArrayLike] = None,
+    compression: Optional[str] = None,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> None: ...
 def write_image(
-    path: Path, image: npt.ArrayLike, channels: Optional[Dict[str, Floats]] = None
+    path: Path,
+    image: npt.ArrayLike,
+    channels: Optional[Dict[str, Floats]] = None,
+    *,
+    color: bool = True,
+    metadata: Optional[Dict[str, Any]] = None,
+    window: Optional[Sequence[int]] = None,
 ) -> None: ...
 def write_vdb(
-    path: Path, grids: Iterable[Union[Grid, VectorGrid]], *, half: bool = False
+    path: Path,
+    grids: Iterable[Union[Grid, VectorGrid, MaskGrid]],
+    *,
+    half: bool = False,
+    compression: str = "blosc",
 ) -> None: ...
 def _render(
-    grid: Grid,
-    width: int,
-    height: int,
-    samples: int,
-    eye: Optional[npt.ArrayLike],
-    lookat: Optional[npt.ArrayLike],
-    up: Optional[npt.ArrayLike],
-    from_: Optional[npt.ArrayLike],
-    camera: str,
-    focal: float,
-    aperture: float,
-    frame: float,
-    iso: Optional[float],
-    shading: str,
-    light: npt.ArrayLike,
-    color: npt.ArrayLike,
-    ambient: float,
-    background: Optional[npt.ArrayLike],
-    shadows: bool,
-    allow_empty: bool,
-    tolerance: float,
-    seed: int,
+    scene: Dict[str, Any],
+    picture: Dict[str, Any],
     threads: int,
     progress: Optional[Progress],
-) -> Tuple[Floats, Dict[str, Floats]]: ...
+) -> Tuple[Floats, Dict[str, Floats], Dict[str, Any], Optional[Tuple[int, int, int, int]]]: ...
+def _turntable(
+    scene: Dict[str, Any], picture: Dict[str, Any], pictures: int
+) -> List[Dict[str, Any]]: ...

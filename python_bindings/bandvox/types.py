@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from ._bandvox import Mesh
+    from ._bandvox import Mesh, Patches
 
-__all__ = ["Doubles", "Field", "Floats", "Path", "Progress", "Source", "Voxel"]
+__all__ = ["Doubles", "Field", "Floats", "Iso", "Path", "Progress", "Source", "Voxel"]
 
 Path = Union[str, "os.PathLike[str]"]
 Floats = npt.NDArray[np.float32]
@@ -22,5 +22,7 @@ Voxel = Tuple[int, int, int]
 Progress = Callable[[str, Optional[float]], object]
 # The values at places x, y, z.
 Field = Callable[[Doubles, Doubles, Doubles], npt.ArrayLike]
-# A file, 'shape:NAME', a mesh, (points, triangles) or a function.
-Source = Union[Path, "Mesh", Sequence[npt.ArrayLike], Field]
+# A file, 'shape:NAME', a mesh, patches, (points, triangles) or a function.
+Source = Union[Path, "Mesh", "Patches", Sequence[npt.ArrayLike], Field]
+# The value that is a surface; 'volume': the one that encloses the volume of the source.
+Iso = Union[float, str]

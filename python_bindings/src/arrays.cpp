@@ -105,11 +105,11 @@ py::array matrixOf(const openvdb::Mat4d& rows) {
     return ownedArray(std::move(numbers), {4, 4});
 }
 
-openvdb::Mat4d transformOf(const py::handle& object) {
-    const std::string expected = "numbers of shape (4, 4) with a last row 0 0 0 1";
-    const py::array given = arrayOf(object, "transform", expected);
-    if (given.ndim() != 2 || given.shape(0) != 4 || given.shape(1) != 4 || !isNumeric(given)) {
-        refuse("transform", described(given), expected);
+openvdb::Mat4d mat4Of(const py::handle& object, const char* what) {
+    const std::string expected = "numbers of shape (4, 4)";
+    const py::array given = numericArray(object, what, expected);
+    if (given.ndim() != 2 || given.shape(0) != 4 || given.shape(1) != 4) {
+        refuse(what, described(given), expected);
     }
     const auto numbers = py::array_t<double, py::array::forcecast>::ensure(given);
     const auto columns = numbers.unchecked<2>();
@@ -117,9 +117,13 @@ openvdb::Mat4d transformOf(const py::handle& object) {
     for (int i = 0; i < 4; ++i) {
         for (int j = 0; j < 4; ++j) rows(j, i) = columns(i, j);
     }
-    const bool isAffine =
-        columns(3, 0) == 0 && columns(3, 1) == 0 && columns(3, 2) == 0 && columns(3, 3) == 1;
-    if (!isAffine) refuse("transform", "another last row", expected);
+    return rows;
+}
+
+openvdb::Mat4d transformOf(const py::handle& object) {
+    const openvdb::Mat4d rows = mat4Of(object, "transform");
+    const bool isAffine = rows(0, 3) == 0 && rows(1, 3) == 0 && rows(2, 3) == 0 && rows(3, 3) == 1;
+    if (!isAffine) refuse("transform", "another last row", "a last row 0 0 0 1");
     const double volume = rows.getMat3().det();
     if (!std::isfinite(volume) || volume == 0) {
         refuse("transform", "directions in one plane, or no numbers", "three directions");

@@ -54,7 +54,10 @@ pybind11::array ownedArray(std::vector<Number> numbers, std::vector<pybind11::ss
 /// A 4 x 4 matrix that acts on columns, as NumPy's `@` has it; OpenVDB's act on rows.
 pybind11::array matrixOf(const openvdb::Mat4d& rows);
 
-/// The other way. Throws Error(ErrorKind::Usage) unless it is 4 x 4 with a last row 0 0 0 1.
+/// The other way. Throws Error(ErrorKind::Usage) unless it is 4 x 4 numbers.
+openvdb::Mat4d mat4Of(const pybind11::handle& object, const char* what);
+
+/// The same of a transform, with a last row 0 0 0 1.
 openvdb::Mat4d transformOf(const pybind11::handle& object);
 
 }  // namespace bandvox::python

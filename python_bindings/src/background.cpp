@@ -1,12 +1,13 @@
 #include "background.h"
 
+#include "kept_thread.h"
+
 #include <bandvox/core/parallel.h>
 
 #include <chrono>
 #include <exception>
 #include <future>
 #include <memory>
-#include <thread>
 
 namespace bandvox::python {
 
@@ -52,10 +53,10 @@ void runInBackground(const std::function<void(Progress&)>& work, const py::objec
     std::future<void> done = task.get_future();
     std::exception_ptr stopped;
     {
-        std::thread worker;
         const py::gil_scoped_release unlocked;
-        worker = std::thread(std::move(task));
-        auto called = std::chrono::steady_clock::now();
+        KeptThread worker;
+        worker.start([&task] { task(); });
+        auto called = std::chrono::steady_clock::now() - kBetweenCalls;
         while (done.wait_for(kBetweenLooks) != std::future_status::ready) {
             if (stopped) continue;
             const py::gil_scoped_acquire locked;
@@ -73,7 +74,6 @@ void runInBackground(const std::function<void(Progress&)>& work, const py::objec
                 progress.stop();
             }
         }
-        worker.join();
     }
     if (stopped) std::rethrow_exception(stopped);
     done.get();

@@ -50,7 +50,9 @@ SharedSurface fitted(const py::object& places, const py::object& values,
     ScatteredInput input(places, values, columns, 2);
     if (!input.fileName().empty()) object->name = input.fileName();
     const SurfaceFit fit = inBackground(progress, threads, [&](Progress& watched) {
-        return fitSurface(input.points(watched), options, watched);
+        const ScatteredPoints& points = input.points(watched);
+        object->columns = points.names;
+        return fitSurface(points, options, watched);
     });
     judge(fit, options, hasTolerance);
     object->surface = levels ? sumOf(fit, *levels) : fit.sum();

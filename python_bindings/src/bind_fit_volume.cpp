@@ -3,6 +3,7 @@
 #include "arrays.h"
 #include "background.h"
 #include "bindings.h"
+#include "choices.h"
 #include "errors.h"
 #include "grid_object.h"
 #include "scattered_arrays.h"
@@ -13,6 +14,7 @@
 #include <bandvox/scatter/fit_volume.h>
 #include <bandvox/scatter/spline_volume_to_grids.h>
 
+#include <fit_columns.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -29,6 +31,7 @@ namespace {
 struct VolumeObject {
     VolumeFit fit;
     std::string name = "points";
+    std::vector<std::string> columns;  // their names; empty of arrays
 };
 
 using SharedVolume = std::shared_ptr<VolumeObject>;
@@ -50,7 +53,9 @@ SharedVolume fittedVolume(const py::object& places, const py::object& values,
     ScatteredInput input(places, values, columns, 3);
     if (!input.fileName().empty()) object->name = input.fileName();
     object->fit = inBackground(progress, threads, [&](Progress& watched) {
-        return fitVolume(input.points(watched), options, watched);
+        const ScatteredPoints& points = input.points(watched);
+        object->columns = points.names;
+        return fitVolume(points, options, watched);
     });
     judgeVolume(object->fit, options, hasTolerance);
     return object;
@@ -84,14 +89,7 @@ py::array coveredAt(const VolumeObject& self, const py::object& points) {
     return covered;
 }
 
-py::object gridOfVolume(const VolumeObject& self, const std::string& name, int column, int columns,
-                        int resolution, double voxelSize, int threads, const py::object& progress) {
-    const SplineVolume& volume = self.fit.volume;
-    if (columns != 1 && columns != 3) {
-        throw Error(ErrorKind::Usage, "columns is " + std::to_string(columns) +
-                                          "; expected 1, or 3 for a VectorGrid");
-    }
-    requireColumns(volume, column, columns);
+double voxelSizeOf(const SplineVolume& volume, int resolution, double voxelSize) {
     if (voxelSize == 0) {
         const openvdb::Vec3d size = volume.bounds().extents();
         if (resolution < 1) {
@@ -101,13 +99,62 @@ py::object gridOfVolume(const VolumeObject& self, const std::string& name, int c
         voxelSize = std::max({size[0], size[1], size[2]}) / resolution;
     }
     if (!(voxelSize > 0)) throw Error(ErrorKind::Usage, "voxel_size: expected a number above 0");
-    const openvdb::VecType type =
-        name == "vel" ? openvdb::VEC_CONTRAVARIANT_RELATIVE : openvdb::VEC_INVARIANT;
-    const openvdb::GridPtrVec grids = inBackground(progress, threads, [&](Progress& watched) {
-        return splineVolumeToGrids(volume, {{name, column, columns, type}}, voxelSize, watched);
-    });
-    setSourceMetadata(*grids.front(), self.name);
-    return objectOf(grids.front());
+    return voxelSize;
+}
+
+/// How volumes are sampled.
+struct SamplingArguments {
+    int resolution;
+    double voxelSize;
+    int threads;
+    py::object progress;
+};
+
+openvdb::GridPtrVec sampledGrids(const VolumeObject& self, const std::vector<ColumnGrid>& wanted,
+                                 const SamplingArguments& arguments) {
+    const SplineVolume& volume = self.fit.volume;
+    const double side = voxelSizeOf(volume, arguments.resolution, arguments.voxelSize);
+    openvdb::GridPtrVec grids = inBackground(
+        arguments.progress, arguments.threads,
+        [&](Progress& watched) { return splineVolumeToGrids(volume, wanted, side, watched); });
+    for (const auto& grid : grids) {
+        setSourceMetadata(*grid, self.name);
+        grid->insertMeta("bandvox_reach", openvdb::DoubleMetadata(volume.reach()));
+    }
+    return grids;
+}
+
+py::object gridOfVolume(const VolumeObject& self, const std::string& name, int column, int columns,
+                        const std::string& quantity, const SamplingArguments& arguments) {
+    if (columns != 1 && columns != 3) {
+        throw Error(ErrorKind::Usage, "columns is " + std::to_string(columns) +
+                                          "; expected 1, or 3 for a VectorGrid");
+    }
+    requireColumns(self.fit.volume, column, columns);
+    ColumnGrid wanted{name, column, columns,
+                      name == "vel" ? openvdb::VEC_CONTRAVARIANT_RELATIVE : openvdb::VEC_INVARIANT};
+    if (choiceOf(quantity, {"value", "gradient"}, "quantity") == 1) {
+        if (columns != 1) {
+            throw Error(ErrorKind::Usage, "a gradient is of one column, and columns is 3");
+        }
+        wanted.type = openvdb::VEC_COVARIANT;
+        wanted.isGradient = true;
+    }
+    return objectOf(sampledGrids(self, {wanted}, arguments).front());
+}
+
+/// A grid for each column, or for three that belong together by their names.
+py::list gridsOfVolume(const VolumeObject& self, const SamplingArguments& arguments) {
+    std::vector<std::string> names = self.columns;
+    for (int i = static_cast<int>(names.size()); i < self.fit.volume.columns(); ++i) {
+        names.push_back(self.fit.volume.columns() == 1 ? "value"
+                                                       : "value " + std::to_string(i + 1));
+    }
+    py::list result;
+    for (const auto& grid : sampledGrids(self, app::gridsOfColumns(names), arguments)) {
+        result.append(objectOf(grid));
+    }
+    return result;
 }
 
 py::tuple corner(const openvdb::Vec3d& place) {
@@ -127,11 +174,30 @@ void bindFitVolume(py::module_& module) {
         .def("covers", &coveredAt, py::arg("points"),
              "(n,) bool: whether there is a value, within reach of the places fitted.")
         .def(
-            "grid", &gridOfVolume, py::kw_only(), py::arg("name") = "density",
-            py::arg("column") = 0, py::arg("columns") = 1, py::arg("resolution") = 256,
+            "grid",
+            [](const VolumeObject& self, const std::string& name, int column, int columns,
+               const std::string& quantity, int resolution, double voxelSize, int threads,
+               const py::object& progress) {
+                return gridOfVolume(self, name, column, columns, quantity,
+                                    {resolution, voxelSize, threads, progress});
+            },
+            py::kw_only(), py::arg("name") = "density", py::arg("column") = 0,
+            py::arg("columns") = 1, py::arg("quantity") = "value", py::arg("resolution") = 256,
             py::arg("voxel_size") = 0.0, py::arg("threads") = 0, py::arg("progress") = py::none(),
-            "A column as a Grid, or three from column on as a VectorGrid. resolution: voxels along "
-            "the longest side of the points' box; voxel_size: world units, instead.")
+            "A column as a Grid, or three from column on as a VectorGrid. quantity: 'value', or "
+            "'gradient', of one column, a VectorGrid per world unit. resolution: voxels along the "
+            "longest side of the points' box; voxel_size: world units, instead.")
+        .def(
+            "grids",
+            [](const VolumeObject& self, int resolution, double voxelSize, int threads,
+               const py::object& progress) {
+                return gridsOfVolume(self, {resolution, voxelSize, threads, progress});
+            },
+            py::kw_only(), py::arg("resolution") = 256, py::arg("voxel_size") = 0.0,
+            py::arg("threads") = 0, py::arg("progress") = py::none(),
+            "A list of grids, one for each column, named after it; columns named r, g and b become "
+            "the VectorGrid Cd, and those of an x, y and z one of their own. The others are those "
+            "of grid.")
         .def_property_readonly(
             "bounds",
             [](const VolumeObject& self) {
@@ -145,6 +211,8 @@ void bindFitVolume(py::module_& module) {
         .def_property_readonly(
             "columns", [](const VolumeObject& self) { return self.fit.volume.columns(); },
             "How many values there are at a place.")
+        .def_readonly("column_names", &VolumeObject::columns,
+                      "Their names in the file that they come from; empty of arrays.")
         .def_property_readonly(
             "largest", [](const VolumeObject& self) { return self.fit.largest; },
             "The largest difference from a value, in parts of their range.")

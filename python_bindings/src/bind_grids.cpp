@@ -1,4 +1,4 @@
-// Grids: to and from arrays, files and pickles.
+// Grids: to and from arrays and pickles.
 
 #include "arrays.h"
 #include "grid_object.h"
@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <sstream>
+#include <type_traits>
 
 namespace bandvox::python {
 
@@ -90,12 +91,14 @@ CoordBBox boxOf(const openvdb::GridBase& grid, const py::object& bounds) {
     throw Error(ErrorKind::Result, "the grid '" + grid.getName() + "' has no active voxel");
 }
 
-constexpr std::size_t kWidth(const openvdb::FloatGrid& /*grid*/) {
-    return 1;
-}
-constexpr std::size_t kWidth(const openvdb::Vec3SGrid& /*grid*/) {
-    return 3;
-}
+template <typename Grid>
+constexpr bool kIsVector = std::is_same_v<Grid, openvdb::Vec3SGrid>;
+template <typename Grid>
+constexpr bool kIsMask = std::is_same_v<Grid, openvdb::BoolGrid>;
+
+/// What arrays of a grid's values are made of.
+template <typename Grid>
+using NumberOf = std::conditional_t<kIsMask<Grid>, bool, float>;
 
 /// The values of a box as [x][y][z], or [x][y][z][3], and its first voxel.
 template <typename Grid>
@@ -111,8 +114,8 @@ py::tuple toArray(const GridObject<Grid>& object, const py::object& bounds) {
                                            " voxels would be too large; expected smaller bounds");
     }
     std::vector<py::ssize_t> shape{size[0], size[1], size[2]};
-    if (kWidth(grid) == 3) shape.push_back(3);
-    py::array_t<float> array(shape);
+    if (kIsVector<Grid>) shape.push_back(3);
+    py::array_t<NumberOf<Grid>> array(shape);
     auto* values = reinterpret_cast<typename Grid::ValueType*>(array.mutable_data());
     {
         const py::gil_scoped_release unlocked;
@@ -131,8 +134,8 @@ std::shared_ptr<GridObject<Grid>> fromArray(const py::array& given, const py::ob
                                             double tolerance, const std::string& name) {
     using Value = typename Grid::ValueType;
     auto object = std::make_shared<GridObject<Grid>>();
-    object->grid = Grid::create(Value(static_cast<float>(background)));
-    const bool isVector = kWidth(*object->grid) == 3;
+    object->grid = Grid::create(Value(static_cast<NumberOf<Grid>>(background)));
+    constexpr bool isVector = kIsVector<Grid>;
     const py::ssize_t axes = isVector ? 4 : 3;
     const char kind = given.dtype().kind();
     const bool isNumeric = kind == 'f' || kind == 'i' || kind == 'u' || kind == 'b';
@@ -147,7 +150,7 @@ std::shared_ptr<GridObject<Grid>> fromArray(const py::array& given, const py::ob
     }
     // C-ordered floats are taken where they lie.
     const auto values =
-        py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(given);
+        py::array_t<NumberOf<Grid>, py::array::c_style | py::array::forcecast>::ensure(given);
     const Coord first = origin.is_none() ? Coord(0) : coordOf(origin, "origin");
     const CoordBBox box(first, first.offsetBy(static_cast<int>(values.shape(0)) - 1,
                                               static_cast<int>(values.shape(1)) - 1,
@@ -163,10 +166,10 @@ std::shared_ptr<GridObject<Grid>> fromArray(const py::array& given, const py::ob
         }
         grid.transform().postScale(side);
     }
-    auto* data = reinterpret_cast<Value*>(const_cast<float*>(values.data()));
+    auto* data = reinterpret_cast<Value*>(const_cast<NumberOf<Grid>*>(values.data()));
     const py::gil_scoped_release unlocked;
     openvdb::tools::Dense<Value, openvdb::tools::LayoutZYX> dense(box, data);
-    openvdb::tools::copyFromDense(dense, grid, Value(static_cast<float>(tolerance)));
+    openvdb::tools::copyFromDense(dense, grid, Value(static_cast<NumberOf<Grid>>(tolerance)));
     return object;
 }
 
@@ -197,10 +200,21 @@ py::tuple nextBlock(const py::object& self) {
     const auto& leaf = *blocks.next;
     constexpr py::ssize_t kSide = Grid::TreeType::LeafNodeType::DIM;
     std::vector<py::ssize_t> shape{kSide, kSide, kSide};
-    if (kWidth(*blocks.grid) == 3) shape.push_back(3);
-    // The iterator keeps the grid.
-    const py::array_t<float> view(shape, reinterpret_cast<const float*>(leaf.buffer().data()),
-                                  self);
+    if (kIsVector<Grid>) shape.push_back(3);
+    py::array view;
+    if constexpr (kIsMask<Grid>) {
+        // Its values are bits.
+        py::array_t<bool> copied(shape);
+        bool* to = copied.mutable_data();
+        for (openvdb::Index i = 0; i < Grid::TreeType::LeafNodeType::SIZE; ++i) {
+            to[i] = leaf.getValue(i);
+        }
+        view = std::move(copied);
+    } else {
+        // The iterator keeps the grid.
+        view =
+            py::array_t<float>(shape, reinterpret_cast<const float*>(leaf.buffer().data()), self);
+    }
     py::detail::array_proxy(view.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
     const py::tuple result = py::make_tuple(tupleOf(leaf.origin()), view);
     ++blocks.next;
@@ -228,15 +242,21 @@ background by no more than tolerance are not kept. C-ordered float32 is read whe
         .def("to_array", &toArray<Grid>, py::arg("bounds") = py::none(),
              R"(The values of a box as a dense array, and the index of its first voxel.
 
-bounds: the first voxel and the last, by default those around what is active. Returns (float32
-array, indexed [x, y, z]; (x, y, z)). Raises OutOfMemoryError for boxes of more than 2**34 voxels.)")
+bounds: the first voxel and the last, by default those around what is active. Returns (an array,
+float32 or of a mask bool, indexed [x, y, z]; (x, y, z)). Raises OutOfMemoryError for boxes of more than 2**34 voxels.)")
         .def(
             "blocks",
             [](const Object& self) {
                 return Blocks<Grid>{self.grid, self.grid->tree().cbeginLeaf()};
             },
             "Iterates over the 8 x 8 x 8 blocks that are stored, as ((x, y, z) of the first voxel, "
-            "float32 array); arrays are read-only views, not copied.")
+            "array); arrays are read-only, and views of numbers, not copied.")
+        .def_property_readonly(
+            "grid_class",
+            [](const Object& self) {
+                return openvdb::GridBase::gridClassToString(self.grid->getGridClass());
+            },
+            "'fog volume', 'level set', 'staggered' or 'unknown', as OpenVDB has it.")
         .def_property(
             "name", [](const Object& self) { return self.grid->getName(); },
             [](const Object& self, const std::string& name_) { self.grid->setName(name_); })
@@ -273,12 +293,13 @@ array, indexed [x, y, z]; (x, y, z)). Raises OutOfMemoryError for boxes of more 
             "The same with values of its own.")
         .def(
             "write",
-            [](const Object& self, const std::filesystem::path& path, bool isHalf) {
-                const py::gil_scoped_release unlocked;
-                writeVdb(path, {self.grid}, {.half = isHalf});
+            [](const Object& self, const std::filesystem::path& path, bool isHalf,
+               const std::string& compression) {
+                writeGridFiles(path, {self.grid}, vdbOptions(isHalf, compression));
             },
             py::arg("path"), py::kw_only(), py::arg("half") = false,
-            "Writes a .vdb file with this grid alone, whole or not at all.")
+            py::arg("compression") = "blosc",
+            "Writes a .vdb file with this grid alone, as write_vdb does.")
         .def("__repr__",
              [name](const Object& self) {
                  const Coord size = self.grid->evalActiveVoxelBoundingBox().dim();
@@ -296,58 +317,15 @@ array, indexed [x, y, z]; (x, y, z)). Raises OutOfMemoryError for boxes of more 
                         }));
 }
 
-py::list readGrids(const std::filesystem::path& path) {
-    openvdb::GridPtrVec grids;
-    {
-        const py::gil_scoped_release unlocked;
-        grids = readVdb(path);
-    }
-    py::list result;
-    for (const auto& grid : grids) {
-        if (py::object object = objectOf(grid); !object.is_none()) result.append(object);
-    }
-    return result;
-}
-
-void writeGrids(const std::filesystem::path& path, const py::iterable& objects, bool isHalf) {
-    openvdb::GridCPtrVec grids;
-    for (const py::handle object : objects) grids.push_back(gridOf(object));
-    const py::gil_scoped_release unlocked;
-    writeVdb(path, grids, {.half = isHalf});
-}
-
 }  // namespace
-
-py::object objectOf(const openvdb::GridBase::Ptr& grid) {
-    if (auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid)) {
-        return py::cast(std::make_shared<FloatGridObject>(FloatGridObject{floats}));
-    }
-    if (auto vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grid)) {
-        return py::cast(std::make_shared<VectorGridObject>(VectorGridObject{vectors}));
-    }
-    return py::none();
-}
-
-openvdb::FloatGrid::Ptr floatGridOf(const py::handle& object) {
-    if (py::isinstance<FloatGridObject>(object)) return object.cast<FloatGridObject&>().grid;
-    throw Error(ErrorKind::Usage, std::string("found a ") + Py_TYPE(object.ptr())->tp_name +
-                                      "; expected a bandvox.Grid");
-}
-
-openvdb::GridBase::Ptr gridOf(const py::handle& object) {
-    if (py::isinstance<VectorGridObject>(object)) return object.cast<VectorGridObject&>().grid;
-    return floatGridOf(object);
-}
 
 void bindGrids(py::module_& module) {
     bindGrid<openvdb::FloatGrid>(module, "Grid", "A sparse grid of numbers, as a VDB file has it.");
     bindGrid<openvdb::Vec3SGrid>(module, "VectorGrid",
                                  "A sparse grid of vectors or colours, as a VDB file has it.");
-    module.def("read_vdb", &readGrids, py::arg("path"),
-               "The grids of a .vdb file, a list; those of other types than float and vec3s are "
-               "left out. Raises InputError for files that are none.");
-    module.def("write_vdb", &writeGrids, py::arg("path"), py::arg("grids"), py::kw_only(),
-               py::arg("half") = false, "Writes grids to a .vdb file, whole or not at all.");
+    bindGrid<openvdb::BoolGrid>(module, "MaskGrid",
+                                "A sparse grid of truths, as of binary voxels. Functions that "
+                                "take a Grid take it as 1 where it is active.");
 }
 
 }  // namespace bandvox::python

@@ -7,6 +7,7 @@
 #include "choices.h"
 #include "errors.h"
 #include "grid_object.h"
+#include "iso_argument.h"
 #include "patches_object.h"
 #include "solid_mesh.h"
 
@@ -19,10 +20,12 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 #include <unistd.h>
+#include <words.h>
 
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -108,8 +111,39 @@ StrokeOptions checked(const StrokeOptions& stroke) {
     return stroke;
 }
 
-void setPage(OutlineOptions& options, const std::array<double, 2>& page,
+/// Width and height in millimetres of a page with a name, as in "A4-landscape".
+std::array<double, 2> namedPage(const std::string& name) {
+    const std::map<std::string, std::array<double, 2>> sizes{
+        {"a3", {297, 420}}, {"a4", {210, 297}}, {"a5", {148, 210}}, {"letter", {215.9, 279.4}}};
+    std::string lower = app::lowerCase(name);
+    const std::string turned = "-landscape";
+    const bool isTurned = lower.ends_with(turned);
+    if (isTurned) lower.resize(lower.size() - turned.size());
+    const auto found = sizes.find(lower);
+    if (found == sizes.end()) {
+        throw Error(ErrorKind::Usage, "page is '" + name +
+                                          "'; expected width and height in millimetres, or 'A3', "
+                                          "'A4', 'A5' or 'letter', also with '-landscape'");
+    }
+    std::array<double, 2> size = found->second;
+    if (isTurned) std::swap(size[0], size[1]);
+    return size;
+}
+
+void setPage(OutlineOptions& options, const py::object& asked,
              const std::optional<double>& margin) {
+    std::array<double, 2> page{};
+    if (py::isinstance<py::str>(asked)) {
+        page = namedPage(asked.cast<std::string>());
+    } else {
+        const std::string expected = "two numbers, width and height in millimetres";
+        const py::array numbers = numericArray(asked, "page", expected);
+        if (numbers.ndim() != 1 || numbers.size() != 2) {
+            throw Error(ErrorKind::Usage,
+                        "page: found " + described(numbers) + "; expected " + expected);
+        }
+        page = asked.cast<std::array<double, 2>>();
+    }
     requireLength(page[0], "page");
     requireLength(page[1], "page");
     options.width = page[0];
@@ -126,14 +160,15 @@ struct DrawnSources {
     PatchModel patches;
     std::vector<OutlineVolume> volumes;
     std::vector<std::filesystem::path> files;
+    IsoArgument iso;  // of the volumes
 };
 
-void addSource(const py::handle& source, const std::optional<double>& iso, DrawnSources& sources) {
+void addSource(const py::handle& source, DrawnSources& sources) {
     if (py::isinstance<PatchesObject>(source)) {
         sources.patches.append(source.cast<const PatchesObject&>().model);
     } else if (py::isinstance<FloatGridObject>(source)) {
         const auto& grid = source.cast<const FloatGridObject&>().grid;
-        sources.volumes.push_back({grid, iso, grid->getName()});
+        sources.volumes.push_back({grid, {}, grid->getName()});
     } else if (isPath(py::reinterpret_borrow<py::object>(source))) {
         sources.files.push_back(source.cast<std::filesystem::path>());
     } else {
@@ -143,14 +178,15 @@ void addSource(const py::handle& source, const std::optional<double>& iso, Drawn
     }
 }
 
-DrawnSources sourcesOf(const py::object& source, const std::optional<double>& iso) {
+DrawnSources sourcesOf(const py::object& source, const IsoArgument& iso) {
     DrawnSources sources;
+    sources.iso = iso;
     if (py::isinstance<py::list>(source) || py::isinstance<py::tuple>(source)) {
-        for (const py::handle part : source) addSource(part, iso, sources);
+        for (const py::handle part : source) addSource(part, sources);
     } else {
-        addSource(source, iso, sources);
+        addSource(source, sources);
     }
-    if (iso && sources.volumes.empty()) {
+    if (iso.isGiven() && sources.volumes.empty()) {
         throw Error(ErrorKind::Usage, "iso is for grids, and there is none; expected one");
     }
     return sources;
@@ -167,6 +203,9 @@ std::shared_ptr<DrawingObject> draw(DrawnSources sources, const OutlineOptions& 
     PatchModel& patches = sources.patches;
     drawing->outline = inBackground(progress, threads, [&](Progress& watched) {
         for (const auto& file : sources.files) patches.append(readPatches(file, watched));
+        for (auto& volume : sources.volumes) {
+            volume.iso = isoFor(sources.iso, volume.grid, watched);
+        }
         return sources.volumes.empty()
                    ? patchesToOutline(patches, options, watched)
                    : volumesToOutline(sources.volumes, patches, options, watched);
@@ -272,13 +311,14 @@ void bindOutline(py::module_& module) {
     const StrokeOptions stroke;
     module.def(
         "outline",
-        [](const py::object& source, const std::array<double, 2>& page,
-           const std::optional<double>& margin, double tolerance, double creaseAngle,
-           const std::vector<std::string>& kinds, bool hidden, double width, std::string color,
-           double hiddenWidth, std::string hiddenColor, std::string dash, const py::object& eye,
-           const py::object& lookat, const py::object& up, const py::object& from,
-           const std::string& camera, double focal, double aperture, double frame,
-           const std::optional<double>& iso, const std::vector<double>& isophotes,
+        [](const py::object& source, const py::object& page, const std::optional<double>& margin,
+           double tolerance, double creaseAngle, const std::vector<std::string>& kinds, bool hidden,
+           double width, std::string color, double hiddenWidth, std::string hiddenColor,
+           std::string dash, const py::object& eye, const py::object& lookat, const py::object& up,
+           const py::object& from, const py::object& camera, const py::object& cameraFile,
+           const std::optional<double>& focal, const std::optional<double>& aperture,
+           const std::optional<double>& fov, const std::optional<double>& frame,
+           const py::object& iso, const std::vector<double>& isophotes,
            const std::optional<double>& suggestive, const std::array<double, 3>& light,
            const std::string& fill, const std::vector<double>& tones,
            std::vector<std::string> fillColors, double shade, int threads,
@@ -287,6 +327,9 @@ void bindOutline(py::module_& module) {
             options.isophotes = isophotes;
             options.suggestive = suggestive;
             options.light = openvdb::Vec3d(light.data());
+            if (!(options.light.length() > 0)) {
+                throw Error(ErrorKind::Usage, "light: expected a direction that is not all 0");
+            }
             options.fill =
                 static_cast<OutlineFillKind>(choiceOf(fill, {"none", "flat", "toon"}, "fill"));
             options.tones = tones;
@@ -294,8 +337,10 @@ void bindOutline(py::module_& module) {
             options.tolerance = tolerance;
             options.creaseAngle = creaseAngle;
             options.hidden = hidden;
-            options.camera = cameraOf({eye, lookat, up, from, camera, focal, aperture, frame});
-            return draw(sourcesOf(source, iso), options, kinds,
+            options.camera = cameraOf(
+                {eye, lookat, up, from, camera, cameraFile, focal, aperture, fov, frame},
+                (options.height - 2 * options.margin) / (options.width - 2 * options.margin));
+            return draw(sourcesOf(source, isoArgumentOf(iso)), options, kinds,
                         {width, hiddenWidth, std::move(color), std::move(hiddenColor),
                          std::move(dash), std::move(fillColors), shade},
                         threads, progress);
@@ -308,9 +353,10 @@ void bindOutline(py::module_& module) {
         py::arg("stroke_color") = stroke.color, py::arg("hidden_stroke") = stroke.hiddenWidth,
         py::arg("hidden_color") = stroke.hiddenColor, py::arg("dash") = stroke.dash,
         py::arg("eye") = py::none(), py::arg("lookat") = py::none(), py::arg("up") = py::none(),
-        py::arg("from_") = py::none(), py::arg("camera") = "perspective",
-        py::arg("focal") = standard.camera.focal, py::arg("aperture") = standard.camera.aperture,
-        py::arg("frame") = standard.camera.frame, py::arg("iso") = py::none(),
+        py::arg("from_") = py::none(), py::arg("camera") = py::none(),
+        py::arg("camera_file") = py::none(), py::arg("focal") = py::none(),
+        py::arg("aperture") = py::none(), py::arg("fov") = py::none(),
+        py::arg("frame") = py::none(), py::arg("iso") = py::none(),
         py::arg("isophotes") = standard.isophotes, py::arg("suggestive") = py::none(),
         py::arg("light") =
             std::array<double, 3>{standard.light[0], standard.light[1], standard.light[2]},
@@ -320,14 +366,13 @@ void bindOutline(py::module_& module) {
         R"(Draws free-form surfaces and volumes as lines; returns a Drawing.
 
 source: Patches, a .bpt or .obj file of them, a Grid, or a list of such. iso: the value of grids
-that is the surface, by default as they say, else 0.5, or 0 of a level set. isophotes:
-lines where the cosine of the angle between the normal and the direction to the light is one of
+that is the surface, as of to_mesh. isophotes: lines where the cosine of the angle between the normal and the direction to the light is one of
 these; light: along the camera's right, up and back. suggestive: of grids, draw suggestive contours of at
 least this strength, as in 20. fill: what is between lines, 'none', 'flat', a
 colour for each object, or 'toon', tones of it; tones: cosines of that angle at which they change,
 ascending; fill_colors: of the objects, one after the other, '#rrggbb'; shade: the darkest tone, as
-a part of the colour. page: width and height, millimetres; margin: what
-stays free. tolerance: how far lines may be from the true ones, millimetres. crease_angle: patches
+a part of the colour. page: width and height, millimetres, or 'A3', 'A4', 'A5' or 'letter', also
+with '-landscape'; margin: what stays free. tolerance: how far lines may be from the true ones, millimetres. crease_angle: patches
 that meet at more have a line between, degrees. kinds: which lines are drawn. hidden: keep those
 behind something. stroke, hidden_stroke: widths, millimetres; stroke_color, hidden_color: as in CSS;
 dash: of hidden lines. The camera's words are those of render. Raises ResultError if nothing is to

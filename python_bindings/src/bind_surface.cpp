@@ -14,12 +14,16 @@
 #include <bandvox/core/parallel.h>
 #include <bandvox/mesh/write_mesh.h>
 #include <bandvox/render/image.h>
+#include <bandvox/scatter/colored_height_field.h>
 #include <bandvox/scatter/height_field_source.h>
+#include <bandvox/scatter/surface_quantity.h>
 #include <bandvox/scatter/write_surface.h>
 
+#include <fit_columns.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -55,36 +59,44 @@ py::object evaluatedSurface(const SurfaceObject& self, const py::object& x, cons
     return shaped(std::move(numbers), std::move(places.shape));
 }
 
-/// Samples along x and y, so many along the longer side, as far apart along both.
-std::array<int, 2> sampleCounts(const BsplineSurface& surface, int longer) {
-    constexpr int kMostSamples = 32768;
-    if (longer < 2 || longer > kMostSamples) {
-        throw Error(ErrorKind::Usage,
-                    "samples is " + std::to_string(longer) + "; expected 2 to 32768");
+std::vector<SurfaceQuantity> quantitiesOf(const std::vector<std::string>& names) {
+    std::vector<SurfaceQuantity> quantities;
+    for (const std::string& name : names) {
+        const auto quantity = surfaceQuantityNamed(name);
+        if (!quantity ||
+            std::find(quantities.begin(), quantities.end(), *quantity) != quantities.end()) {
+            std::string known;
+            for (const SurfaceQuantity one : surfaceQuantities()) known += " '" + nameOf(one) + "'";
+            throw Error(ErrorKind::Usage,
+                        "quantities: found '" + name + "'; expected some of" + known + ", once");
+        }
+        quantities.push_back(*quantity);
     }
-    const double width = surface.rectangle().width(), height = surface.rectangle().height();
-    const double step = std::max(width, height) / (longer - 1);
-    const auto count = [&](double side) {
-        return std::max(2, static_cast<int>(std::lround(side / step)) + 1);
-    };
-    return {count(width), count(height)};
+    return quantities;
 }
 
-py::array sampled(const SurfaceObject& self, int samples) {
+py::array sampled(const SurfaceObject& self, int samples, const std::vector<std::string>& names) {
+    const std::vector<SurfaceQuantity> quantities = quantitiesOf(names);
     const std::array<int, 2> counts = sampleCounts(self.surface, samples);
-    const auto columns = static_cast<std::size_t>(self.surface.columns());
     const auto places = static_cast<std::size_t>(counts[0]) * static_cast<std::size_t>(counts[1]);
-    std::vector<double> numbers(places * columns);
+    std::size_t width = 0;
+    for (const SurfaceQuantity one : quantities) {
+        width += static_cast<std::size_t>(self.surface.columns() * numbersOf(one));
+    }
+    std::vector<double> numbers(places * width);
     {
         const py::gil_scoped_release unlocked;
-        for (std::size_t column = 0; column < columns; ++column) {
-            const std::vector<double> values = self.surface.sample(
-                {.nx = counts[0], .ny = counts[1], .column = static_cast<int>(column)});
-            for (std::size_t i = 0; i < places; ++i) numbers[i * columns + column] = values[i];
+        std::size_t at = 0;
+        for (int column = 0; column < self.surface.columns(); ++column) {
+            for (const SurfaceQuantity one : quantities) {
+                for (const auto& values : sampleQuantity(self.surface, counts, column, one)) {
+                    for (std::size_t i = 0; i < places; ++i) numbers[i * width + at] = values[i];
+                    ++at;
+                }
+            }
         }
     }
-    return ownedArray(std::move(numbers),
-                      {counts[0], counts[1], static_cast<py::ssize_t>(columns)});
+    return ownedArray(std::move(numbers), {counts[0], counts[1], static_cast<py::ssize_t>(width)});
 }
 
 std::shared_ptr<PatchesObject> patchesOf(const SurfaceObject& self) {
@@ -115,11 +127,14 @@ std::shared_ptr<MeshObject> meshOfSurface(const SurfaceObject& self, int samples
     mesh->name = self.name;
     const auto counts = sampleCounts(self.surface, samples);
     const py::gil_scoped_release unlocked;
-    mesh->surface = heightFieldMesh(self.surface, counts);
+    mesh->surface = heightFieldMesh(self.surface, counts, 0, app::redColumn(self.columns));
     return mesh;
 }
 
-void saveSurface(const SurfaceObject& self, const std::filesystem::path& path, int samples) {
+void saveSurface(const SurfaceObject& self, const std::filesystem::path& path, int samples,
+                 const std::vector<std::string>& names) {
+    std::vector<SurfaceQuantity> quantities = quantitiesOf(names);
+    const int red = app::redColumn(self.columns);
     const auto counts = sampleCounts(self.surface, samples);
     const std::string extension = path.extension().string();
     const bool isKnown =
@@ -130,16 +145,23 @@ void saveSurface(const SurfaceObject& self, const std::filesystem::path& path, i
                         "' is of an unknown kind; expected .bpt, .npy, .exr, "
                         ".obj, .ply, .stl, .gltf or .glb, or density() for a .vdb");
     }
+    const bool hasQuantities = extension == ".npy" || extension == ".exr";
+    if (!names.empty() && !hasQuantities) {
+        throw Error(ErrorKind::Usage,
+                    "quantities are for .npy and .exr, and the file is '" + path.string() + "'");
+    }
     const py::gil_scoped_release unlocked;
     AtomicFile file(path);
     if (extension == ".bpt") {
         writeBezierPatches(file, self.surface);
     } else if (extension == ".npy") {
-        writeSamples(file, self.surface, counts);
+        if (quantities.empty()) quantities = {SurfaceQuantity::Value};
+        writeSamples(file, self.surface, counts, quantities);
     } else if (extension == ".exr") {
-        writeImage(file, heightFieldImage(self.surface, counts), {.color = false});
+        writeImage(file, heightFieldImage(self.surface, counts, 0, red, quantities),
+                   {.color = red >= 0});
     } else {
-        writeMesh(file, heightFieldMesh(self.surface, counts));
+        writeMesh(file, heightFieldMesh(self.surface, counts, 0, red));
     }
     file.commit();
 }
@@ -214,15 +236,23 @@ void defineReading(py::class_<SurfaceObject, SharedSurface>& surface) {
 void defineMaking(py::class_<SurfaceObject, SharedSurface>& surface) {
     const DensityOptions standard;
     surface
-        .def("sample", &sampled, py::arg("samples") = 257,
-             "(x, y, columns) float64: samples from border to border, so many along the longer "
-             "side.")
+        .def(
+            "sample", &sampled, py::arg("samples") = 257, py::kw_only(),
+            py::arg("quantities") = std::vector<std::string>{"value"},
+            R"((x, y, numbers) float64: samples from border to border, so many along the longer side.
+
+quantities: what there is of each column, some of 'value', 'dx', 'dy', 'dxx', 'dxy', 'dyy', 'normal'
+(three numbers), 'gaussian' and 'mean'.)")
         .def("patches", &patchesOf, "The first column as bicubic Patches, which are it exactly.")
         .def("mesh", &meshOfSurface, py::arg("samples") = 257,
-             "The height field of the first column as a Mesh with normals.")
+             "The height field of the first column as a Mesh with normals, and with colours if "
+             "there "
+             "are columns named r, g and b.")
         .def("save", &saveSurface, py::arg("path"), py::kw_only(), py::arg("samples") = 257,
+             py::arg("quantities") = std::vector<std::string>{},
              "Writes .bpt patches, .npy samples, an .exr of heights, normals and positions, or a "
-             "mesh (.obj, .ply, .stl, .gltf, .glb), whole or not at all.")
+             "mesh (.obj, .ply, .stl, .gltf, .glb), whole or not at all. quantities: of .npy as of "
+             "sample; of .exr channels besides.")
         .def(
             "density",
             [](const SurfaceObject& self, int resolution, double voxelSize,
@@ -244,6 +274,34 @@ void defineMaking(py::class_<SurfaceObject, SharedSurface>& surface) {
 }
 
 }  // namespace
+
+std::array<int, 2> sampleCounts(const BsplineSurface& surface, int longer) {
+    constexpr int kMostSamples = 32768;
+    if (longer < 2 || longer > kMostSamples) {
+        throw Error(ErrorKind::Usage,
+                    "samples is " + std::to_string(longer) + "; expected 2 to 32768");
+    }
+    const double width = surface.rectangle().width(), height = surface.rectangle().height();
+    const double step = std::max(width, height) / (longer - 1);
+    const auto count = [&](double side) {
+        return std::max(2, static_cast<int>(std::lround(side / step)) + 1);
+    };
+    return {count(width), count(height)};
+}
+
+ColoredMesh coloredSurface(const SurfaceObject& surface, double voxelSize) {
+    const int red = app::redColumn(surface.columns);
+    if (red < 0) {
+        throw Error(ErrorKind::Usage,
+                    "the surface has no columns named r, g and b; expected three of these names");
+    }
+    constexpr double kMostSamples = 4097;
+    const Rectangle& r = surface.surface.rectangle();
+    const double wanted = std::ceil(std::max(r.width(), r.height()) / voxelSize) + 1;
+    const auto counts =
+        sampleCounts(surface.surface, static_cast<int>(std::clamp(wanted, 2.0, kMostSamples)));
+    return coloredHeightField(surface.name, surface.surface, counts, red);
+}
 
 BsplineSurface sumOf(const SurfaceFit& fit, const std::array<int, 2>& levels) {
     const auto count = static_cast<int>(fit.levels.size());
@@ -268,8 +326,8 @@ void bindSurface(py::module_& module) {
         .def(
             "part",
             [](const SurfaceObject& self, int first, int last) {
-                return std::make_shared<SurfaceObject>(
-                    SurfaceObject{self.fit, sumOf(*self.fit, {first, last}), self.name});
+                return std::make_shared<SurfaceObject>(SurfaceObject{
+                    self.fit, sumOf(*self.fit, {first, last}), self.name, self.columns});
             },
             py::arg("first"), py::arg("last"),
             "The sum of the levels from first to last, as counted from 1: (1, 3) leaves detail "
@@ -289,6 +347,8 @@ void bindSurface(py::module_& module) {
         .def_property_readonly(
             "columns", [](const SurfaceObject& self) { return self.surface.columns(); },
             "How many values there are at a place.")
+        .def_readonly("column_names", &SurfaceObject::columns,
+                      "Their names in the file that they come from; empty of arrays.")
         .def_property_readonly(
             "tension", [](const SurfaceObject& self) { return self.fit->tension; },
             "The tension that was used.")

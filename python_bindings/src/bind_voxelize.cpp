@@ -8,6 +8,7 @@
 #include "errors.h"
 #include "grid_object.h"
 #include "solid_mesh.h"
+#include "surface_object.h"
 
 #include <bandvox/bandlimit/surface_to_color.h>
 #include <bandvox/grid/density_grid.h>
@@ -36,6 +37,7 @@ enum class VoxelBackend { Auto, Cpu, Gpu };
 struct VoxelRequest {
     VoxelOptions voxels;
     VoxelBackend backend = VoxelBackend::Auto;
+    GpuMethod gpuMethod = GpuMethod::Bits;
     int threads = 0;
     py::object progress;
 };
@@ -47,7 +49,7 @@ std::optional<VoxelResult> voxelsByGpu(const MeshSource& source, const VoxelRequ
     const bool canChoose = request.backend == VoxelBackend::Auto;
     if (canChoose && !findGpu().isHardware) return std::nullopt;
     try {
-        return meshToVoxelsOnGpu(source, request.voxels, GpuMethod::Bits, progress);
+        return meshToVoxelsOnGpu(source, request.voxels, request.gpuMethod, progress);
     } catch (const Error& error) {
         const bool isDevices = error.kind() == ErrorKind::Runtime ||
                                error.kind() == ErrorKind::Memory ||
@@ -145,20 +147,27 @@ ColoredMesh coloredMeshOf(const MeshObject& mesh) {
 }
 
 py::object colorsFor(const py::object& source, const py::object& density, double cutoff,
-                     double order, int threads, const py::object& progress) {
+                     double order, int tile, int threads, const py::object& progress) {
     const auto grid = floatGridOf(density);
     ColorOptions options;
     options.voxelSize = grid->voxelSize()[0];
     options.filter = ExponentialFilter{order, cutoff};
+    options.tile = tile;
     const bool isFile = isPath(source);
     const auto path = isFile ? source.cast<std::filesystem::path>() : std::filesystem::path();
-    const auto mesh = isFile ? nullptr : meshOf(source);
-    if (!isFile && !mesh) {
+    const auto surface =
+        py::isinstance<SurfaceObject>(source) ? source.cast<SharedSurface>() : nullptr;
+    const auto mesh = isFile || surface ? nullptr : meshOf(source);
+    if (!isFile && !surface && !mesh) {
         throw Error(ErrorKind::Usage, std::string("found a ") + Py_TYPE(source.ptr())->tp_name +
-                                          "; expected a file or a Mesh with colors");
+                                          "; expected a file, a Mesh with colors or a Surface "
+                                          "with columns of them");
     }
     std::vector<std::string> warnings;
     const ColorResult result = inBackground(progress, threads, [&](Progress& watched) {
+        if (surface) {
+            return surfaceToColor(coloredSurface(*surface, options.voxelSize), options, watched);
+        }
         if (!isFile) return surfaceToColor(coloredMeshOf(*mesh), options, watched);
         const ColoredMeshFile file = readColoredMesh(path, watched);
         warnings = file.warnings;
@@ -175,8 +184,9 @@ void bindVoxelize(py::module_& module) {
     module.def(
         "voxelize",
         [](const py::object& source, int resolution, double voxelSize, int threshold, bool fraction,
-           const std::string& axis, const std::string& backend, const py::object& bounds,
-           int threads, const py::object& progress) {
+           const std::string& axis, const std::string& backend, const std::string& gpuMethod,
+           const std::string& as, const py::object& bounds, int threads,
+           const py::object& progress) -> py::object {
             VoxelRequest request;
             request.voxels.resolution = resolution;
             request.voxels.voxelSize = voxelSize;
@@ -185,33 +195,46 @@ void bindVoxelize(py::module_& module) {
             request.voxels.axis = static_cast<ScanAxis>(choiceOf(axis, {"x", "y", "z"}, "axis"));
             request.backend =
                 static_cast<VoxelBackend>(choiceOf(backend, {"auto", "cpu", "gpu"}, "backend"));
+            request.gpuMethod =
+                static_cast<GpuMethod>(choiceOf(gpuMethod, {"bits", "slices"}, "gpu_method"));
+            const bool isMask = choiceOf(as, {"density", "mask"}, "as_") == 1;
             request.threads = threads;
             request.progress = progress;
             if (threshold > 0 && fraction) {
                 throw Error(ErrorKind::Usage, "threshold and fraction exclude each other");
             }
+            if (isMask && fraction) {
+                throw Error(ErrorKind::Usage,
+                            "a mask cannot hold what fraction gives; expected as_='density', or "
+                            "threshold");
+            }
             const VoxelResult result = voxelsOf(source, request, bounds);
             warn(result.warnings);
+            if (isMask) return objectOf(voxelsToMask(*result.grid));
             return objectOf(result.grid);
         },
         py::arg("source"), py::kw_only(), py::arg("resolution") = standard.resolution,
         py::arg("voxel_size") = 0.0, py::arg("threshold") = 0, py::arg("fraction") = false,
-        py::arg("axis") = "x", py::arg("backend") = "auto", py::arg("bounds") = py::none(),
-        py::arg("threads") = 0, py::arg("progress") = py::none(),
-        R"(Turns a solid into voxels that are 1 where their centres are inside, a Grid.
+        py::arg("axis") = "x", py::arg("backend") = "auto", py::arg("gpu_method") = "bits",
+        py::arg("as_") = "density", py::arg("bounds") = py::none(), py::arg("threads") = 0,
+        py::arg("progress") = py::none(),
+        R"(Turns a solid into voxels that are 1 where their centres are inside, a Grid; as_='mask'
+gives a MaskGrid, True there.
 
 source, resolution, voxel_size, bounds: as of bandlimit. threshold: 1 to 8 of a voxel's eight
 sub-samples that have to be inside, instead of its centre; fraction: the value is the share of them.
 axis: of the rows that are scanned. backend: 'cpu', 'gpu' (OpenGL, for closed meshes), or 'auto',
-which takes a GPU if there is one. All of them give the same voxels.)");
+which takes a GPU if there is one; gpu_method: 'bits', all slices at once, or 'slices', one by one.
+All of them give the same voxels.)");
     const ColorOptions coloring;
     module.def("colors", &colorsFor, py::arg("source"), py::arg("density"), py::kw_only(),
                py::arg("cutoff") = coloring.filter.cutoff, py::arg("order") = coloring.filter.order,
-               py::arg("threads") = 0, py::arg("progress") = py::none(),
+               py::arg("tile") = 0, py::arg("threads") = 0, py::arg("progress") = py::none(),
                R"(The colours of a surface as a VectorGrid 'Cd' on the lattice of a density.
 
-source: a mesh file with colours or textures, or a Mesh with colors. Linear light. cutoff, order: as
-of the density. Raises InputError if there is no colour.)");
+source: a mesh file with colours or textures, a Mesh with colors, or a Surface with columns named r,
+g and b. Linear light. cutoff, order, tile: as of the density. Raises InputError if a file has no
+colour.)");
 }
 
 }  // namespace bandvox::python

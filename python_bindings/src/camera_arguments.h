@@ -10,16 +10,19 @@
 namespace bandvox::python {
 
 /// Three numbers, or nothing for None.
-std::optional<openvdb::Vec3d> optionalVectorOf(const pybind11::object& object, const char* what);
+std::optional<openvdb::Vec3d> optionalVectorOf(const pybind11::handle& object, const char* what);
 
-/// A view as Python's functions take it. None: chosen so that the object fits.
+/// A view as Python's functions take it. None: chosen so that the object fits, or as the camera's
+/// file says.
 struct CameraArguments {
     pybind11::object eye, lookat, up, from;
-    std::string camera;  ///< "perspective" or "orthographic"
-    double focal, aperture, frame;
+    pybind11::object camera;  ///< "perspective" or "orthographic"
+    pybind11::object file;    ///< of glTF; may go on with a colon and a name
+    std::optional<double> focal, aperture, fov, frame;
 };
 
-/// Throws Error(ErrorKind::Usage) for what is no view.
-CameraOptions cameraOf(const CameraArguments& arguments);
+/// `aspect`: height of the picture over its width. Throws Error(ErrorKind::Usage) for what is no
+/// view, Error(ErrorKind::Input) for a file without a camera.
+CameraOptions cameraOf(const CameraArguments& arguments, double aspect);
 
 }  // namespace bandvox::python

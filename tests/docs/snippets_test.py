@@ -41,7 +41,9 @@ PAGES = {
     "docs/mesh-output.md": (["bunny.vdb", "painted.obj", "smoke.vdb"], "bunny.ply smooth.glb shell.stl"),
     "docs/outline.md": (["examples", "bunny.obj", "cow.obj"], "teapot.svg bunny.svg cow.svg tree.svg"),
     "docs/points.md": ([], "water.vdb drops.vdb water.ply distances.vdb"),
-    "docs/python.md": (["bunny.obj"], "bunny.vdb bunny.png surface.ply surface.vdb surface.svg"),
+    "docs/python.md": (
+        ["bunny.obj"],
+        "bunny.vdb bunny.png scan.npy bone.html scene.exr around.0.png around.3.png surface.ply surface.vdb surface.svg"),
     "docs/scans.md": (
         ["scan", "slice.0000.tif", "scan.tif", "two series", "bunny.obj"],
         "scan.vdb head.vdb head.nrrd bunny.0001.png head.0001.tif small.nrrd"),

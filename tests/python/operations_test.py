@@ -56,7 +56,7 @@ def test_merging_and_comparing(torus):
     assert same["maximum"] < 1e-6 and same["hausdorff"] < 1e-4
     assert same["volumes"][0] == pytest.approx(same["volumes"][1])
     twice = bandvox.merge([torus, torus], operation="sum")
-    assert bandvox.compare(torus, twice, surfaces=False)["maximum"] == pytest.approx(1, abs=0.01)
+    assert bandvox.compare(torus, twice, only="values")["maximum"] == pytest.approx(1, abs=0.01)
     with pytest.raises(bandvox.UsageError, match="'union'"):
         bandvox.merge([torus, torus], operation="join")
     with pytest.raises(bandvox.UsageError):
@@ -74,7 +74,7 @@ def test_surfaces(torus, tmp_path):
     with pytest.raises(ValueError):
         mesh.points[0] = 0
 
-    distances = bandvox.to_level_set(torus, half_width=2)
+    distances = bandvox.to_level_set(torus, band=2)
     array, _ = distances.to_array()
     assert array.min() == pytest.approx(-2 * torus.voxel_size[0], rel=1e-4)
     iso, volume = bandvox.iso_of_volume(torus, torus.metadata["bandvox_source_volume"])
