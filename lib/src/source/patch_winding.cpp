@@ -176,14 +176,15 @@ struct LineSystem {
     /// The crossing of the ray, with its sign, where there is one at most; nothing if Newton's
     /// method does not find it out.
     std::optional<int> crossing() const {
-        double u = 0.5, v = 0.5;
+        double u = 0.5, v = 0.5, before = HUGE_VAL;
         for (int step = 0; step < kMostSteps; ++step) {
             const RayJet jet = jetAt(part, u, v);
             const NewtonStep by = newtonStep(jet);
             if (!std::isfinite(by.du) || !std::isfinite(by.dv)) return {};
             u += by.du;
             v += by.dv;
-            if (by.length() < kStep) return signAt(jet, u, v);
+            if (isAtRest(by.length(), before)) return signAt(jet, u, v);
+            before = by.length();
             if (!isWithin(u, kLost) || !isWithin(v, kLost)) return {};
         }
         return {};
@@ -193,7 +194,7 @@ struct LineSystem {
     /// largest slope along the ray. A step tells how far from its end the root is
     /// at most, so that few are needed where that is clearly in the part and ahead, or is not.
     std::optional<int> quickCrossing(RayJet jet, double largestSlope) const {
-        double u = 0.5, v = 0.5;
+        double u = 0.5, v = 0.5, before = HUGE_VAL;
         for (int step = 0; step < kMostSteps; ++step) {
             const NewtonStep by = newtonStep(jet);
             if (!std::isfinite(by.du) || !std::isfinite(by.dv)) return {};
@@ -201,7 +202,8 @@ struct LineSystem {
             const double farthest = std::max(u, 1 - u) + std::max(v, 1 - v);
             u += by.du;
             v += by.dv;
-            if (by.length() < kStep) return signAt(jet, u, v);
+            if (isAtRest(by.length(), before)) return signAt(jet, u, v);
+            before = by.length();
             if (isBounded) {
                 const double reach = kRootFromStep * by.length();
                 if (by.length() > (1 + kInverseTurning) * farthest) return 0;
@@ -221,8 +223,11 @@ struct LineSystem {
     }
 
   private:
-    // Each step squares the error; small parts are not known better than to 1e-13 or so.
-    static constexpr double kStep = 1e-10;
+    // Each step squares the error, until of a small part rounding is all that is left.
+    static bool isAtRest(double step, double before) {
+        constexpr double kNear = 1e-10, kSmall = 1e-3;
+        return step < kNear || (step < kSmall && step > 0.5 * before);
+    }
     static constexpr int kMostSteps = 30;
     // Slopes are bounded in the part; beyond its sides by so much they hardly differ.
     static constexpr double kBeside = 1e-3;

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "source/control_net.h"
 #include "outline/patches/vectors.h"
 #include "outline/patches/view_patch.h"
+#include "source/control_net.h"
 
 #include <array>
 

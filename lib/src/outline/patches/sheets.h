@@ -1,8 +1,8 @@
 #pragma once
 
 #include "outline/drawing/curve.h"
-#include "source/control_net.h"
 #include "outline/patches/view_patch.h"
+#include "source/control_net.h"
 
 #include <cstddef>
 #include <optional>

@@ -1,8 +1,8 @@
 #include "outline/volumes/pierced_patches.h"
 
 #include "outline/drawing/join_curves.h"
-#include "source/control_net.h"
 #include "outline/patches/onto_zero.h"
+#include "source/control_net.h"
 
 #include <bandvox/core/parallel.h>
 
