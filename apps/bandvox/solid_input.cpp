@@ -82,7 +82,7 @@ PositionalEntry solidInputEntry() {
 
 bool isPatchFile(const std::string& input) {
     if (isShape(input) || !mayHoldPatches(input)) return false;
-    return extensionOf(input) == ".bpt" ||
+    return extensionOf(input) != ".obj" ||
            (std::filesystem::is_regular_file(input) && hasFreeForm(input));
 }
 

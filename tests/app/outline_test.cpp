@@ -397,7 +397,7 @@ TEST(Outline, RefusesBrokenFiles) {
         {"a.obj", replaced(kCylinder, "parm u 0 1", "trim 0 1 1"), "trims"},
         {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "the mesh is flat", 4},
         {"a.obj", "surf 0 1 0 1 1 2 3 4\n", "line 1"},
-        {"a.txt", kFlatPatch, "expected a .vdb, free-form surfaces (.bpt, .obj), a mesh"},
+        {"a.txt", kFlatPatch, "expected a .vdb, free-form surfaces (.bpt, .obj, .step"},
     };
     for (const Broken& broken : all) {
         const TemporaryFolder folder;

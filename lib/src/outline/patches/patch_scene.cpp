@@ -1,5 +1,6 @@
 #include "outline/patches/patch_scene.h"
 
+#include "outline/patches/edge_curves.h"
 #include "outline/patches/refine_point.h"
 
 namespace bandvox {
@@ -19,6 +20,8 @@ class PatchReader final : public CurveReader {
         if (isIsophote && a.patch == b.patch && a.t == b.t) {
             return isophoteBetween(mLit, a, b, share);
         }
+        const bool isEdge = a.rule == CurveRule::Edge && b.rule == CurveRule::Edge;
+        if (isEdge && a.other == b.other) return edgeBetween(mLit, a, b, share);
         return pointBetween(mLit.seen, a, b, share);
     }
 
@@ -54,7 +57,7 @@ class PatchReader final : public CurveReader {
 }  // namespace
 
 PatchScene::PatchScene(const LitPatches& lit, double size)
-    : mLit(lit), mSheets(lit.seen), mSize(size) {}
+    : mLit(lit), mSheets(lit.seen, lit.faces), mSize(size) {}
 
 std::unique_ptr<CurveReader> PatchScene::reader() const {
     return std::make_unique<PatchReader>(mLit, mSheets, mSize);
