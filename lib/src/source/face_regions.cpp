@@ -32,7 +32,10 @@ FaceRegions::FaceRegions(const FaceTopology& topology)
     : mTopology(&topology), mRegions(topology.faces.size()) {
     for (const FaceEdge& edge : topology.edges) {
         for (const EdgeUse& use : edge.uses) {
-            for (const EdgePiece& piece : use.pieces) mPieces.push_back(&piece);
+            for (const EdgePiece& piece : use.pieces) {
+                mPieces.push_back(&piece);
+                mEdges.push_back(&edge);
+            }
         }
     }
     for (std::size_t f = 0; f < mRegions.size(); ++f) {
@@ -116,21 +119,26 @@ bool FaceRegions::keeps(int patch, double u, double v) const {
     return isInside;
 }
 
-bool FaceRegions::mayCut(int patch, const ParameterBox& box) const {
-    const Region* region = regionOf(patch);
-    if (!region) return false;
+ParameterBox FaceRegions::inFace(int patch, const ParameterBox& box) const {
     const auto& range = mTopology->places[static_cast<std::size_t>(patch)].range;
-    ParameterBox inFace;
+    ParameterBox result;
     for (const auto& corner : {box.low, box.high}) {
         std::array<double, 2> p{};
         for (std::size_t c = 0; c < 2; ++c) {
             p[c] = range[c][0] + corner[c] * (range[c][1] - range[c][0]);
         }
-        inFace.expand(p);
+        result.expand(p);
     }
-    for (std::size_t r = rowOf(inFace.low[1]); r <= rowOf(inFace.high[1]); ++r) {
+    return result;
+}
+
+bool FaceRegions::mayCut(int patch, const ParameterBox& box) const {
+    const Region* region = regionOf(patch);
+    if (!region) return false;
+    const ParameterBox inside = inFace(patch, box);
+    for (std::size_t r = rowOf(inside.low[1]); r <= rowOf(inside.high[1]); ++r) {
         for (const std::uint32_t k : region->rows[r]) {
-            if (region->parts[k].meets(inFace)) return true;
+            if (region->parts[k].meets(inside)) return true;
         }
     }
     return false;

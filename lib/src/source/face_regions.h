@@ -39,11 +39,29 @@ class FaceRegions {
         bool meets(const ParameterBox& other) const;
     };
 
+    /// Calls visit(part) for the parts of loops that may pass through a rectangle of a patch's
+    /// parameters, each once.
+    template <class Visit>
+    void visitParts(int patch, const ParameterBox& box, const Visit& visit) const {
+        const Region* region = regionOf(patch);
+        if (!region) return;
+        const ParameterBox inside = inFace(patch, box);
+        const std::size_t first = rowOf(inside.low[1]), last = rowOf(inside.high[1]);
+        for (std::size_t r = first; r <= last; ++r) {
+            for (const std::uint32_t k : region->rows[r]) {
+                const Part& part = region->parts[k];
+                const bool isKnown = r > first && rowOf(part.box.low[1]) < r;
+                if (!isKnown && part.box.meets(inside)) visit(part);
+            }
+        }
+    }
+
     const FaceTopology& topology() const { return *mTopology; }
 
     /// The pieces of all edges, one after the other.
     const EdgePiece& piece(int number) const { return *mPieces[static_cast<std::size_t>(number)]; }
-    int pieceCount() const { return static_cast<int>(mPieces.size()); }
+    /// The edge that a piece is of.
+    const FaceEdge& edgeOf(int number) const { return *mEdges[static_cast<std::size_t>(number)]; }
 
   private:
     struct Region {
@@ -52,10 +70,12 @@ class FaceRegions {
     };
 
     const Region* regionOf(int patch) const;
+    ParameterBox inFace(int patch, const ParameterBox& box) const;
     static std::size_t rowOf(double v);
 
     const FaceTopology* mTopology = nullptr;
     std::vector<const EdgePiece*> mPieces;
+    std::vector<const FaceEdge*> mEdges;  // of pieces
     std::vector<Region> mRegions;  // one for each face, without parts if it is not trimmed
 };
 

@@ -29,7 +29,7 @@ struct PatchSampling {
     const SurfaceQuadrature& quadrature;
     RegionClip clip;
     std::vector<SurfaceSample>& samples;
-    const PatchTrim* trim = nullptr;  ///< null where all of the patch counts
+    const CellTrim* trim = nullptr;  ///< null where all of the patch counts
 };
 
 /// How large a cell is for quadrature along each parameter: voxels, turning included.
@@ -102,7 +102,7 @@ void applyRules(int uRule, int vRule, const ParameterCell& cell, const PatchSamp
 /// Of a cell that others may cut.
 void applyTrimmedRule(const ParameterCell& cell, const PatchSampling& sampling) {
     const double lengthScale = 1.0 / sampling.voxelSize;
-    for (const TrimmedPoint& t : trimmedRule(*sampling.trim, sampling.patch, cell)) {
+    for (const TrimmedPoint& t : sampling.trim->rule(sampling.patch, cell)) {
         const PatchPoint p = sampling.patch.at(t.u, t.v);
         sampling.clip.append(p.position * lengthScale,
                              (t.weight * lengthScale * lengthScale) * p.du.cross(p.dv),
@@ -119,9 +119,9 @@ void sampleCell(const ParameterCell& cell, int depth, const PatchSampling& sampl
 
     // See what a union leaves of it.
     if (sampling.trim != nullptr) {
-        const PatchTrim::Share share = sampling.trim->share(sampling.patch, cell);
-        if (share == PatchTrim::Share::None) return;
-        if (share == PatchTrim::Share::All) {
+        const CellTrim::Share share = sampling.trim->share(sampling.patch, cell);
+        if (share == CellTrim::Share::None) return;
+        if (share == CellTrim::Share::All) {
             PatchSampling whole = sampling;
             whole.trim = nullptr;
             sampleCell(cell, depth, whole);
@@ -158,7 +158,7 @@ void sampleCell(const ParameterCell& cell, int depth, const PatchSampling& sampl
 
 }  // namespace
 
-void samplePatch(const Patch& patch, const PatchTrim* trim, const SamplingRegion& region,
+void samplePatch(const Patch& patch, const CellTrim* trim, const SamplingRegion& region,
                  const SurfaceQuadrature& quadrature, std::vector<SurfaceSample>& samples) {
     sampleCell({}, 0, {patch, region.voxelSize, quadrature, RegionClip(region), samples, trim});
 }

@@ -89,6 +89,10 @@ PatchTrim::Share PatchTrim::share(const Patch& patch, const ParameterCell& cell)
                                                                               : Share::None;
 }
 
+std::vector<TrimmedPoint> PatchTrim::rule(const Patch& patch, const ParameterCell& cell) const {
+    return trimmedRule(*this, patch, cell);
+}
+
 bool PatchTrim::keeps(const Patch& patch, double u, double v) const {
     const PatchPoint p = patch.at(u, v);
     Vec3d normal = p.du.cross(p.dv);

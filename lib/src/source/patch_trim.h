@@ -1,5 +1,6 @@
 #pragma once
 
+#include "source/cell_trim.h"
 #include "source/patch.h"
 #include "source/patch_winding.h"
 
@@ -11,7 +12,7 @@ namespace bandvox {
 
 /// What the union of pieces leaves of one of them: the part of its surface that has the outside of
 /// all pieces before it and a solid behind.
-class PatchTrim {
+class PatchTrim final : public CellTrim {
   public:
     /// One of the pieces of a union.
     struct Piece {
@@ -19,16 +20,15 @@ class PatchTrim {
         bool isCavity = false;  ///< winds around its inside the other way
     };
 
-    /// What is left of a cell.
-    enum class Share { None, All, Unknown };
-
     /// Of the piece `own`. Faces that lie on each other to within `distance` (world units) count
     /// once if they look the same way, and not at all otherwise.
     PatchTrim(const std::vector<Piece>& pieces, std::size_t own, double distance)
         : mPieces(pieces), mOwn(own), mDistance(distance) {}
 
     /// Unknown if other pieces may be in the cell's box.
-    Share share(const Patch& patch, const ParameterCell& cell) const;
+    Share share(const Patch& patch, const ParameterCell& cell) const override;
+
+    std::vector<TrimmedPoint> rule(const Patch& patch, const ParameterCell& cell) const override;
 
     /// True if the point is left.
     bool keeps(const Patch& patch, double u, double v) const;
@@ -37,12 +37,6 @@ class PatchTrim {
     const std::vector<Piece>& mPieces;
     std::size_t mOwn;
     double mDistance;
-};
-
-/// A point of a product rule on what is left of a cell: parameters and weight, of which those of
-/// the whole cell add up to its area in parameters.
-struct TrimmedPoint {
-    double u, v, weight;
 };
 
 /// Gauss points on what is left of a cell: along lines across the cut, up to where that is, and

@@ -13,6 +13,17 @@ namespace {
 
 constexpr double kOnEdge = 1e-7;  // of parameters: a fold that ends so near ends there
 
+// The number of the piece that has a parameter of the edge.
+std::size_t pieceAt(const EdgeUse& use, double t) {
+    std::size_t k = 0;
+    while (k + 1 < use.pieces.size() && use.pieces[k].to <= t) ++k;
+    return k;
+}
+
+std::array<double, 2> placeAt(const EdgePiece& piece, double t) {
+    return jetAt(piece.curve, (t - piece.from) / (piece.to - piece.from)).place;
+}
+
 CurvePoint onPiece(const LitPatches& lit, int number, double s) {
     const EdgePiece& piece = lit.faces->piece(number);
     const ParameterJet jet = jetAt(piece.curve, s);
@@ -129,16 +140,6 @@ class EdgeWork {
 
     const FaceTopology& topology() const { return mLit.faces->topology(); }
 
-    // The number of the piece that has a parameter of the edge.
-    static std::size_t pieceAt(const EdgeUse& use, double t) {
-        std::size_t k = 0;
-        while (k + 1 < use.pieces.size() && use.pieces[k].to <= t) ++k;
-        return k;
-    }
-    static std::array<double, 2> placeAt(const EdgePiece& piece, double t) {
-        return jetAt(piece.curve, (t - piece.from) / (piece.to - piece.from)).place;
-    }
-
     // How the surface turns to the eye there: F, and that relative to lengths.
     struct Facing {
         double sign, steepness;
@@ -233,6 +234,21 @@ BorderCurves edgeCurves(const LitPatches& lit, std::span<const Curve> folds, dou
     EdgeWork work(lit, sampling);
     work.breakAt(folds);
     return work.work(crease);
+}
+
+EdgeFaces facesAt(const LitPatches& lit, const CurvePoint& point) {
+    const EdgePiece& own = lit.faces->piece(point.other);
+    const double t = own.from + point.s * (own.to - own.from);
+    EdgeFaces result;
+    for (const EdgeUse& use : lit.faces->edgeOf(point.other).uses) {
+        result.faces.push_back(use.face);
+        if (use.pieces.empty()) continue;
+        const EdgePiece& piece = use.pieces[pieceAt(use, t)];
+        const auto [u, v] = placeAt(piece, t);
+        const ViewPoint p = lit.seen[static_cast<std::size_t>(piece.patch)].at(u, v);
+        result.gap = std::max(result.gap, std::hypot(p.x - point.x, p.y - point.y, p.z - point.z));
+    }
+    return result;
 }
 
 CurvePoint edgeBetween(const LitPatches& lit, const CurvePoint& a, const CurvePoint& b,

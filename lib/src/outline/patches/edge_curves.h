@@ -4,6 +4,7 @@
 #include "outline/patches/isophotes.h"
 
 #include <span>
+#include <vector>
 
 namespace bandvox {
 
@@ -15,5 +16,13 @@ BorderCurves edgeCurves(const LitPatches& lit, std::span<const Curve> folds, dou
 /// The exact point of an edge between two of its points on one piece, at a share of the way.
 CurvePoint edgeBetween(const LitPatches& lit, const CurvePoint& a, const CurvePoint& b,
                        double share);
+
+/// What faces are at a point of an edge, and how far their curves are from each other, in page
+/// units: as files have them, they only nearly meet.
+struct EdgeFaces {
+    std::vector<int> faces;
+    double gap = 0;
+};
+EdgeFaces facesAt(const LitPatches& lit, const CurvePoint& point);
 
 }  // namespace bandvox

@@ -3,12 +3,17 @@
 #include "outline/patches/edge_curves.h"
 #include "outline/patches/refine_point.h"
 
+#include <algorithm>
+
 namespace bandvox {
 namespace {
 
 // A surface in front has to be nearer by this part of the page's size, since the curve's own
 // surface is met there, too, twice where it folds.
 constexpr double kDepthMargin = 1e-7;
+
+// Faces of an edge may be in front of it by their gap, the more the steeper they are seen.
+constexpr double kSteepest = 30;
 
 class PatchReader final : public CurveReader {
   public:
@@ -26,7 +31,11 @@ class PatchReader final : public CurveReader {
     }
 
     int countBefore(const CurvePoint& point) override {
-        return mSheets.countBefore(point, kDepthMargin * mSize);
+        const double margin = kDepthMargin * mSize;
+        if (point.rule != CurveRule::Edge) return mSheets.countBefore(point, margin);
+        const EdgeFaces own = facesAt(mLit, point);
+        return mSheets.countBefore(point, margin, own.faces,
+                                   std::max(margin, kSteepest * own.gap));
     }
 
     double foldAt(const CurvePoint& point, bool isOther) override {

@@ -284,6 +284,18 @@ int Sheets::countBefore(const CurvePoint& point, double margin) const {
     return static_cast<int>(sight.met.size());
 }
 
+int Sheets::countBefore(const CurvePoint& point, double margin, std::span<const int> ownFaces,
+                        double ownMargin) const {
+    Sight sight{point.x, point.y, point.z - margin, sameDepth()};
+    meetAll(sight);
+    return static_cast<int>(
+        std::count_if(sight.met.begin(), sight.met.end(), [&](const Place& place) {
+            const int face = placeOf(mFaces, place.patch).face;
+            const bool isOwn = std::find(ownFaces.begin(), ownFaces.end(), face) != ownFaces.end();
+            return !isOwn || place.z < point.z - ownMargin;
+        }));
+}
+
 std::optional<Sheets::Place> Sheets::firstAt(double x, double y) const {
     Sight sight{x, y, std::numeric_limits<double>::infinity(), sameDepth()};
     meetAll(sight);

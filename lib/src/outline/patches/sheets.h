@@ -25,6 +25,10 @@ class Sheets {
     /// by more than `margin`. Where a patch folds within 1/131072 of its parameters it is not met.
     int countBefore(const CurvePoint& point, double margin) const;
 
+    /// The same, but patches of these faces have to be nearer by `ownMargin`.
+    int countBefore(const CurvePoint& point, double margin, std::span<const int> ownFaces,
+                    double ownMargin) const;
+
     /// A place of a patch, and its depth.
     struct Place {
         int patch = -1;
