@@ -44,6 +44,10 @@ void keepWithin(const Handle(Geom_Surface) & surface, ParameterBox& box) {
         if (isU ? surface->IsUPeriodic() : surface->IsVPeriodic()) {
             const double period = isU ? surface->UPeriod() : surface->VPeriod();
             const double size = box.high[c] - box.low[c];
+            if (size > (1 + 1e-9) * period) {
+                throw Error(ErrorKind::Input, "has a face that goes around its surface more than "
+                                              "once; expected such faces to be cut in two");
+            }
             if (size > (1 - 1e-9) * period) box.high[c] = box.low[c] + period;
             // Once around from where it begins needs no more knots.
             const double turns = (box.low[c] - all.low[c]) / period;

@@ -22,6 +22,13 @@ constexpr int kDeepestCellSplit = 64;
 /// Longest side of a cell that others may cut, voxels.
 constexpr double kCutCell = 1.0;
 
+/// Sides that are shorter are points, voxels.
+constexpr double kPointSide = 1e-9;
+
+/// Cells that others may cut and that are shorter than this are taken as they are, voxels: beside
+/// a side that is a point directions turn however small a cell is.
+constexpr double kTinyCutCell = 0.02;
+
 /// What stays the same while a patch is being split.
 struct PatchSampling {
     const Patch& patch;
@@ -35,6 +42,7 @@ struct PatchSampling {
 /// How large a cell is for quadrature along each parameter: voxels, turning included.
 struct CellSize {
     double u = 0, v = 0;
+    double length = 0;  ///< of the longer side, without turning
 };
 
 /// By how much the direction from a to b to c turns, radians; 0 where there is no direction.
@@ -63,14 +71,20 @@ CellSize measure(const ParameterCell& cell, const PatchSampling& sampling) {
     const double vScale = (cell.v1 - cell.v0) / sampling.voxelSize;
     CellSize size;
     for (int i = 0; i < 3; ++i) {
-        const double uTurn = std::max(turning(p[0][i].du, p[1][i].du, p[2][i].du),
-                                      turning(p[0][i].dv, p[1][i].dv, p[2][i].dv));
-        const double vTurn = std::max(turning(p[i][0].du, p[i][1].du, p[i][2].du),
-                                      turning(p[i][0].dv, p[i][1].dv, p[i][2].dv));
-        size.u = std::max(size.u, uScale * simpson(p[0][i].du, p[1][i].du, p[2][i].du) +
-                                      kVoxelsPerRadian * uTurn);
-        size.v = std::max(size.v, vScale * simpson(p[i][0].dv, p[i][1].dv, p[i][2].dv) +
-                                      kVoxelsPerRadian * vTurn);
+        const double uLength = uScale * simpson(p[0][i].du, p[1][i].du, p[2][i].du);
+        const double vLength = vScale * simpson(p[i][0].dv, p[i][1].dv, p[i][2].dv);
+        double uTurn = turning(p[0][i].dv, p[1][i].dv, p[2][i].dv);
+        double vTurn = turning(p[i][0].du, p[i][1].du, p[i][2].du);
+        // Along a side that is a point rounding alone has a direction.
+        if (uLength > kPointSide) {
+            uTurn = std::max(uTurn, turning(p[0][i].du, p[1][i].du, p[2][i].du));
+        }
+        if (vLength > kPointSide) {
+            vTurn = std::max(vTurn, turning(p[i][0].dv, p[i][1].dv, p[i][2].dv));
+        }
+        size.u = std::max(size.u, uLength + kVoxelsPerRadian * uTurn);
+        size.v = std::max(size.v, vLength + kVoxelsPerRadian * vTurn);
+        size.length = std::max({size.length, uLength, vLength});
     }
     return size;
 }
@@ -130,7 +144,9 @@ void sampleCell(const ParameterCell& cell, int depth, const PatchSampling& sampl
     }
 
     const CellSize size = measure(cell, sampling);
-    if (sampling.trim != nullptr && std::max(size.u, size.v) <= kCutCell) {
+    const bool isSmall =
+        std::max(size.u, size.v) <= kCutCell || size.length <= kTinyCutCell;
+    if (sampling.trim != nullptr && isSmall) {
         applyTrimmedRule(cell, sampling);
         return;
     }

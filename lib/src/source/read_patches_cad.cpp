@@ -5,7 +5,7 @@
 
 #include <bandvox/core/error.h>
 
-#include <algorithm>
+#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -28,6 +28,16 @@ void requireWholeFile(const FileContents& file) {
     } else if (extension == ".brep") {
         if (head.find("CASCADE Topology V") == std::string_view::npos) {
             file.fail("does not begin with CASCADE Topology; expected a BREP file as text");
+        }
+        // Each shape ends with a star; after the last one comes which of them is the whole. Without
+        // that Open CASCADE may never come to an end.
+        const auto star = bytes.rfind('*');
+        std::istringstream rest(star == std::string::npos ? "" : bytes.substr(star + 1));
+        std::string shape, location;
+        rest >> shape >> location;
+        const bool isShape = shape.size() > 1 && (shape[0] == '+' || shape[0] == '-');
+        if (!isShape || location.empty()) {
+            file.fail("ends before the shape that it is about; expected the rest of a BREP file");
         }
     } else {
         // Column 73 has the section's letter: Start, or Compressed or Binary, which are rare.
