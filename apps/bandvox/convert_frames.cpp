@@ -267,8 +267,8 @@ bool asksForFrames(const CommandLine& line) {
     if (hasFrame(output) && !isWritableImage(output)) return true;
     // Of other kinds of files, many may be one input.
     const std::string& input = line.positional(0);
-    const bool isWhole = isMeshFile(input) || extensionOf(input) == ".bpt" ||
-                         isCadFile(input) || extensionOf(input) == ".vdb" || isArrayFile(input) ||
+    const bool isWhole = isMeshFile(input) || extensionOf(input) == ".bpt" || isCadFile(input) ||
+                         extensionOf(input) == ".vdb" || isArrayFile(input) ||
                          isPointCloudFile(input);
     return isWhole && hasFrame(input);
 }

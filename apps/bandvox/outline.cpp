@@ -61,7 +61,8 @@ const CommandTable& outlineTable() {
             "are layers of the drawing.",
             {{"INPUT",
               "Newell's .bpt, or .obj with free-form surfaces (cstype bezier or bspline); parts as "
-              ".step, .stp, .iges, .igs or .brep, where Open CASCADE was built in; a .vdb; a mesh or a built-in shape; several of them are one scene.",
+              ".step, .stp, .iges, .igs or .brep, where Open CASCADE was built in; a .vdb; a mesh "
+              "or a built-in shape; several of them are one scene.",
               true,
               {.words = shapeWords(), .endings = outlineEndings()}}},
             {

@@ -319,7 +319,7 @@ void bindOutline(py::module_& module) {
         py::arg("threads") = 0, py::arg("progress") = py::none(),
         R"(Draws free-form surfaces and volumes as lines; returns a Drawing.
 
-source: Patches, a .bpt or .obj file of them, a Grid, or a list of such. iso: the value of grids
+source: Patches, a file of them (.bpt, .obj, .step, .iges or .brep), a Grid, or a list of such. iso: the value of grids
 that is the surface, by default as they say, else 0.5, or 0 of a level set. isophotes:
 lines where the cosine of the angle between the normal and the direction to the light is one of
 these; light: along the camera's right, up and back. suggestive: of grids, draw suggestive contours of at

@@ -1,11 +1,11 @@
 // Drawings of trimmed faces: where lines are, of which kind, and what hides them.
 
 #include "cad/sample_parts.h"
+#include "outline/drawing/draw_curves.h"
 #include "outline/drawing/page_view.h"
 #include "outline/drawing/visible_pieces.h"
 #include "outline/patches/patch_scene.h"
 #include "outline/patches/surface_curves.h"
-#include "outline/drawing/draw_curves.h"
 
 #include <bandvox/outline/patches_to_outline.h>
 
@@ -50,16 +50,14 @@ SeenPart draw(PatchModel model, const OutlineOptions& options) {
     const LitPatches lit{part.model.patches, seen,
                          lightDirection(contentOf(part.model.patches), options), &faces};
     const auto curves = surfaceCurves(lit, options, sampling, silentProgress());
-    part.pieces =
-        visiblePieces(curves, PatchScene(lit, sampling.size), sampling, silentProgress());
+    part.pieces = visiblePieces(curves, PatchScene(lit, sampling.size), sampling, silentProgress());
     return part;
 }
 
 using Inside = std::function<bool(const Vec3d&)>;
 
 bool isInDrilledBlock(const Vec3d& p) {
-    const bool isInBlock =
-        std::abs(p[0]) < 2 && std::abs(p[1]) < 3 && p[2] > 0 && p[2] < 1;
+    const bool isInBlock = std::abs(p[0]) < 2 && std::abs(p[1]) < 3 && p[2] > 0 && p[2] < 1;
     return isInBlock && std::hypot(p[0] - 0.5, p[1]) > 1;
 }
 

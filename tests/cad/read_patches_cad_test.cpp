@@ -5,13 +5,12 @@
 #include <bandvox/core/error.h>
 #include <bandvox/source/patch_solid.h>
 
+#include <gtest/gtest.h>
+
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRep_Builder.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS_Compound.hxx>
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -82,8 +81,7 @@ TEST(ReadCadPatches, FindsTheBoxOfWhatIsLeft) {
 
 TEST(ReadCadPatches, LeavesLoopsAwayThatGoAroundAllOfASurface) {
     const PartFolder folder;
-    const PatchModel ball =
-        readPatches(folder.write(BRepPrimAPI_MakeSphere(1).Shape(), ".brep"));
+    const PatchModel ball = readPatches(folder.write(BRepPrimAPI_MakeSphere(1).Shape(), ".brep"));
     for (const TrimmedFace& face : ball.topology.faces) EXPECT_TRUE(face.loops.empty());
     const PatchModel block = readPatches(folder.write(drilledBlock(), ".brep"));
     ASSERT_EQ(block.topology.faces.size(), 7U);
@@ -173,7 +171,8 @@ TEST(ReadCadPatches, RefusesWhatIsNoWholeFile) {
     };
     const auto first = [](double share) {
         return [share](const std::string& text) {
-            return text.substr(0, static_cast<std::size_t>(share * static_cast<double>(text.size())));
+            return text.substr(0,
+                               static_cast<std::size_t>(share * static_cast<double>(text.size())));
         };
     };
     const auto all = [](const std::string& text) {
@@ -184,7 +183,8 @@ TEST(ReadCadPatches, RefusesWhatIsNoWholeFile) {
         {".step", first(0.5)},
         {".step", all("solid\nendsolid\n")},
         {".step", all("ISO-10303-21;\nEND-ISO-10303-21;\n")},
-        {".step", all("ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n#1=(((;\nENDSEC;\nEND-ISO-10303-21;")},
+        {".step",
+         all("ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n#1=(((;\nENDSEC;\nEND-ISO-10303-21;")},
         {".iges", first(0)},
         {".iges", first(0.5)},
         {".iges", all("ISO-10303-21;\n")},

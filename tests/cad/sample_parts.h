@@ -13,10 +13,9 @@
 #include <IGESControl_Writer.hxx>
 #include <STEPControl_Writer.hxx>
 #include <TopoDS_Shape.hxx>
-#include <gp_Ax2.hxx>
-
 #include <cstdlib>
 #include <filesystem>
+#include <gp_Ax2.hxx>
 #include <iostream>
 #include <sstream>
 #include <string>

@@ -7,10 +7,10 @@
 
 #include <bandvox/core/error.h>
 
+#include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
-#include <BRepBndLib.hxx>
 #include <Bnd_Box.hxx>
 #include <IFSelect_ReturnStatus.hxx>
 #include <IGESControl_Reader.hxx>
@@ -25,7 +25,6 @@
 #include <Transfer_TransientProcess.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
-
 #include <cmath>
 #include <mutex>
 #include <string>
@@ -86,7 +85,8 @@ class OpenCascade final : public CadLibrary {
         if (!BRepTools::Read(shape, path.c_str(), builder) || shape.IsNull()) {
             throw Error(ErrorKind::Input, "is malformed; expected a whole BREP file");
         }
-        return facesOf(sewn(shape), [](const TopoDS_Shape&) { return std::string(); }, progress);
+        return facesOf(
+            sewn(shape), [](const TopoDS_Shape&) { return std::string(); }, progress);
     }
 
     static CadShape readIges(const std::filesystem::path& path, Progress& progress) {
@@ -95,7 +95,8 @@ class OpenCascade final : public CadLibrary {
         reader.TransferRoots();
         const TopoDS_Shape shape = reader.OneShape();
         if (shape.IsNull()) return {};
-        return facesOf(sewn(shape), [](const TopoDS_Shape&) { return std::string(); }, progress);
+        return facesOf(
+            sewn(shape), [](const TopoDS_Shape&) { return std::string(); }, progress);
     }
 
     static CadShape readStep(const std::filesystem::path& path, Progress& progress) {

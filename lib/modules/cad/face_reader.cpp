@@ -17,7 +17,6 @@
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
 #include <TopoDS_Wire.hxx>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -169,8 +168,9 @@ class FaceReader {
         mProgress.throwIfInterrupted();
         const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
         if (surface.IsNull()) {
-            throw Error(ErrorKind::Input, "has a face without a surface, of triangles alone; "
-                                          "expected the surface");
+            throw Error(ErrorKind::Input,
+                        "has a face without a surface, of triangles alone; "
+                        "expected the surface");
         }
         CadFace made;
         made.isReversed = face.Orientation() == TopAbs_REVERSED;
@@ -204,11 +204,11 @@ class FaceReader {
         std::vector<CadEdgeUse> uses;
         for (const TopoDS_Edge& edge : edgesOf(wire, face)) {
             double first = 0, last = 0;
-            const Handle(Geom2d_Curve) curve =
-                BRep_Tool::CurveOnSurface(edge, face, first, last);
+            const Handle(Geom2d_Curve) curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
             if (curve.IsNull()) {
-                throw Error(ErrorKind::Input, "has an edge that no curve on its face tells the "
-                                              "place of; expected one");
+                throw Error(ErrorKind::Input,
+                            "has an edge that no curve on its face tells the "
+                            "place of; expected one");
             }
             if (!(last > first)) continue;
             CadEdgeUse use;

@@ -5,7 +5,6 @@
 #include <bandvox/core/progress.h>
 
 #include <TopoDS_Shape.hxx>
-
 #include <functional>
 #include <string>
 

@@ -8,11 +8,10 @@
 #include <Geom_OffsetSurface.hxx>
 #include <Geom_Plane.hxx>
 #include <Geom_RectangularTrimmedSurface.hxx>
-#include <gp_Pnt.hxx>
-#include <gp_Vec.hxx>
-
 #include <algorithm>
 #include <cmath>
+#include <gp_Pnt.hxx>
+#include <gp_Vec.hxx>
 #include <string>
 
 namespace bandvox {
@@ -45,8 +44,9 @@ void keepWithin(const Handle(Geom_Surface) & surface, ParameterBox& box) {
             const double period = isU ? surface->UPeriod() : surface->VPeriod();
             const double size = box.high[c] - box.low[c];
             if (size > (1 + 1e-9) * period) {
-                throw Error(ErrorKind::Input, "has a face that goes around its surface more than "
-                                              "once; expected such faces to be cut in two");
+                throw Error(ErrorKind::Input,
+                            "has a face that goes around its surface more than "
+                            "once; expected such faces to be cut in two");
             }
             if (size > (1 - 1e-9) * period) box.high[c] = box.low[c] + period;
             // Once around from where it begins needs no more knots.
@@ -193,8 +193,7 @@ std::vector<double> NurbsSurface::breaks(std::size_t axis) const {
     std::vector<double> result;
     const bool isU = axis == 0;
     const int count = isU ? mSpline->NbUKnots() : mSpline->NbVKnots();
-    const double scale =
-        (mBox.high[axis] - mBox.low[axis]) / (mRange[axis][1] - mRange[axis][0]);
+    const double scale = (mBox.high[axis] - mBox.low[axis]) / (mRange[axis][1] - mRange[axis][0]);
     for (int k = 2; k < count; ++k) {
         const double knot = isU ? mSpline->UKnot(k) : mSpline->VKnot(k);
         result.push_back(mBox.low[axis] + scale * (knot - mRange[axis][0]));

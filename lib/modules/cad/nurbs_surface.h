@@ -5,7 +5,6 @@
 
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_Surface.hxx>
-
 #include <array>
 #include <vector>
 

@@ -9,9 +9,8 @@ namespace bandvox {
 #ifdef BANDVOX_IMAGE_MODULE
 
 const ImageLibrary& imageLibrary() {
-    static const auto* const library = static_cast<const ImageLibrary*>(
-        loadModule(BANDVOX_IMAGE_MODULE, "bandvoxImageLibrary",
-                   "image files cannot be read or written"));
+    static const auto* const library = static_cast<const ImageLibrary*>(loadModule(
+        BANDVOX_IMAGE_MODULE, "bandvoxImageLibrary", "image files cannot be read or written"));
     return *library;
 }
 

@@ -2,10 +2,10 @@
 
 #include <bandvox/core/error.h>
 
+#include <dlfcn.h>
+
 #include <filesystem>
 #include <string>
-
-#include <dlfcn.h>
 
 namespace bandvox {
 namespace {
@@ -28,10 +28,10 @@ const void* loadModule(const char* file, const char* entry, const char* failure)
     const auto found = module ? reinterpret_cast<Entry>(dlsym(module, entry)) : nullptr;
     if (!found) {
         const char* why = dlerror();
-        throw Error(ErrorKind::Runtime,
-                    std::string(failure) + ": " +
-                        (why ? std::string(why)
-                             : std::string(file) + " is no module of this library"));
+        throw Error(
+            ErrorKind::Runtime,
+            std::string(failure) + ": " +
+                (why ? std::string(why) : std::string(file) + " is no module of this library"));
     }
     return found();
 }

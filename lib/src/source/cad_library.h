@@ -14,8 +14,8 @@ class CadLibrary {
   public:
     virtual ~CadLibrary() = default;
 
-    /// Lengths are millimetres, but for .brep, which has no unit. `path` ends in .step, .stp, .iges,
-    /// .igs or .brep. Throws Error(ErrorKind::Input), which does not name the file, and
+    /// Lengths are millimetres, but for .brep, which has no unit. `path` ends in .step, .stp,
+    /// .iges, .igs or .brep. Throws Error(ErrorKind::Input), which does not name the file, and
     /// Error(ErrorKind::Interrupted).
     virtual CadShape read(const std::filesystem::path& path, Progress& progress) const = 0;
 };

@@ -79,8 +79,8 @@ bool isWhole(const std::vector<ParameterCurve>& loops) {
             }
         }
         if (!isOnSide) return false;
-        length += std::hypot(curve.back()[0] - curve.front()[0],
-                             curve.back()[1] - curve.front()[1]);
+        length +=
+            std::hypot(curve.back()[0] - curve.front()[0], curve.back()[1] - curve.front()[1]);
     }
     return std::abs(length - 4) < 1e-6;
 }
@@ -127,7 +127,8 @@ class FacesToPatches {
                 mModel.patches.push_back(std::move(patch));
                 topology().places.push_back(
                     {.face = faceIndex(),
-                     .range = {{{mLines[0][i], mLines[0][i + 1]}, {mLines[1][j], mLines[1][j + 1]}}},
+                     .range = {{{mLines[0][i], mLines[0][i + 1]},
+                                {mLines[1][j], mLines[1][j + 1]}}},
                      .inner = {i > 0, i + 1 < columns, j > 0, j + 1 < rows}});
             }
         }

@@ -24,8 +24,7 @@ class CellTrim {
     virtual Share share(const Patch& patch, const ParameterCell& cell) const = 0;
 
     /// Quadrature points on what is left of a cell, which is no longer than a voxel.
-    virtual std::vector<TrimmedPoint> rule(const Patch& patch,
-                                           const ParameterCell& cell) const = 0;
+    virtual std::vector<TrimmedPoint> rule(const Patch& patch, const ParameterCell& cell) const = 0;
 };
 
 }  // namespace bandvox

@@ -112,8 +112,7 @@ bool FaceRegions::keeps(int patch, double u, double v) const {
         // times.
         const double a = part.curve.front()[1], b = part.curve.back()[1];
         if (!(std::min(a, b) <= y && y < std::max(a, b)) || part.box.high[0] <= x) continue;
-        const bool isRight =
-            part.box.low[0] > x || jetAt(part.curve, part.shareAt(y)).place[0] > x;
+        const bool isRight = part.box.low[0] > x || jetAt(part.curve, part.shareAt(y)).place[0] > x;
         if (isRight) isInside = !isInside;
     }
     return isInside;

@@ -76,7 +76,7 @@ class FaceRegions {
     const FaceTopology* mTopology = nullptr;
     std::vector<const EdgePiece*> mPieces;
     std::vector<const FaceEdge*> mEdges;  // of pieces
-    std::vector<Region> mRegions;  // one for each face, without parts if it is not trimmed
+    std::vector<Region> mRegions;         // one for each face, without parts if it is not trimmed
 };
 
 /// The place of a patch in its face; none without faces.

@@ -80,9 +80,7 @@ class FaceSource final : public BoundarySource {
         const int face = mTopology.places[patch].face;
         return static_cast<std::size_t>(mTopology.faces[static_cast<std::size_t>(face)].shell);
     }
-    bool isTurned(std::size_t patch) const {
-        return !mTurned.empty() && mTurned[shellOf(patch)];
-    }
+    bool isTurned(std::size_t patch) const { return !mTurned.empty() && mTurned[shellOf(patch)]; }
 
     // The box of what belongs to the faces.
     void findBounds() {
@@ -92,8 +90,7 @@ class FaceSource final : public BoundarySource {
             for (const EdgePiece& piece : edge.uses[0].pieces) {
                 constexpr int kSteps = 32;
                 for (int k = 0; k <= kSteps; ++k) {
-                    const auto [u, v] =
-                        jetAt(piece.curve, static_cast<double>(k) / kSteps).place;
+                    const auto [u, v] = jetAt(piece.curve, static_cast<double>(k) / kSteps).place;
                     known.expand(mPatches[static_cast<std::size_t>(piece.patch)].at(u, v).position);
                 }
             }
@@ -206,9 +203,8 @@ std::size_t openEdges(const FaceTopology& topology) {
 
 PatchSolid makeFaceSolid(const std::string& name, PatchModel model, Progress& progress) {
     const FaceTopology& topology = model.topology;
-    const bool isAllFaces =
-        std::all_of(topology.places.begin(), topology.places.end(),
-                    [](const FacePlace& place) { return place.face >= 0; });
+    const bool isAllFaces = std::all_of(topology.places.begin(), topology.places.end(),
+                                        [](const FacePlace& place) { return place.face >= 0; });
     if (!isAllFaces) {
         throw Error(ErrorKind::Usage, "trimmed faces and patches of other kinds are together in '" +
                                           name + "'; expected the one or the other");

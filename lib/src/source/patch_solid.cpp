@@ -303,9 +303,8 @@ PatchSolid makePatchSolid(const std::string& name, PatchModel model,
         return makePatchSolid(name, std::move(model.patches), options, progress);
     }
     if (options.base) {
-        throw Error(ErrorKind::Usage,
-                    "a base is for a surface over a plane, and '" + name +
-                        "' is a part with faces of its own; expected none");
+        throw Error(ErrorKind::Usage, "a base is for a surface over a plane, and '" + name +
+                                          "' is a part with faces of its own; expected none");
     }
     return makeFaceSolid(name, std::move(model), progress);
 }

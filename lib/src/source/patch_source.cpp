@@ -144,8 +144,7 @@ void sampleCell(const ParameterCell& cell, int depth, const PatchSampling& sampl
     }
 
     const CellSize size = measure(cell, sampling);
-    const bool isSmall =
-        std::max(size.u, size.v) <= kCutCell || size.length <= kTinyCutCell;
+    const bool isSmall = std::max(size.u, size.v) <= kCutCell || size.length <= kTinyCutCell;
     if (sampling.trim != nullptr && isSmall) {
         applyTrimmedRule(cell, sampling);
         return;

@@ -48,7 +48,8 @@ void requireWholeFile(const FileContents& file) {
         const auto end = bytes.find_last_not_of(" \t\r\n");
         const auto line = bytes.rfind('\n', end) + 1;
         if (end < line + kLetter || bytes[line + kLetter] != 'T') {
-            file.fail("ends before the line with T in column 73; expected the rest of an IGES file");
+            file.fail(
+                "ends before the line with T in column 73; expected the rest of an IGES file");
         }
     }
 }

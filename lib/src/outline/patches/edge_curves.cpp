@@ -27,8 +27,8 @@ std::array<double, 2> placeAt(const EdgePiece& piece, double t) {
 CurvePoint onPiece(const LitPatches& lit, int number, double s) {
     const EdgePiece& piece = lit.faces->piece(number);
     const ParameterJet jet = jetAt(piece.curve, s);
-    const ViewPoint p = lit.seen[static_cast<std::size_t>(piece.patch)].at(jet.place[0],
-                                                                           jet.place[1]);
+    const ViewPoint p =
+        lit.seen[static_cast<std::size_t>(piece.patch)].at(jet.place[0], jet.place[1]);
     double tx = p.xu * jet.slope[0] + p.xv * jet.slope[1];
     double ty = p.yu * jet.slope[0] + p.yv * jet.slope[1];
     const double length = std::hypot(tx, ty);
@@ -69,8 +69,8 @@ bool isOnCurve(const ParameterCurve& curve, double u, double v, double& share) {
         const ParameterJet jet = jetAt(curve, share);
         const double square = jet.slope[0] * jet.slope[0] + jet.slope[1] * jet.slope[1];
         if (!(square > 0)) break;
-        const double move = ((u - jet.place[0]) * jet.slope[0] + (v - jet.place[1]) * jet.slope[1]) /
-                            square;
+        const double move =
+            ((u - jet.place[0]) * jet.slope[0] + (v - jet.place[1]) * jet.slope[1]) / square;
         share = std::clamp(share + move, 0.0, 1.0);
         if (std::abs(move) < 1e-14) break;
     }
@@ -150,8 +150,7 @@ class EdgeWork {
         const auto [u, v] = placeAt(piece, t);
         const ViewPatch& seen = mLit.seen[static_cast<std::size_t>(piece.patch)];
         const ViewPoint p = seen.at(u, v);
-        const double lengths =
-            std::hypot(p.xu, p.yu, p.zu) * std::hypot(p.xv, p.yv, p.zv) + 1e-300;
+        const double lengths = std::hypot(p.xu, p.yu, p.zu) * std::hypot(p.xv, p.yv, p.zv) + 1e-300;
         const double area = p.xu * p.yv - p.xv * p.yu;
         return {evaluate(seen.f, u, v).value, std::abs(area) / lengths, seen.hasFold};
     }
@@ -207,9 +206,7 @@ class EdgeWork {
             const double from = std::max(0.0, (range.from - piece.from) / length);
             const double to = std::min(1.0, (range.to - piece.from) / length);
             if (!(from < to)) continue;
-            const auto at = [&](double s) {
-                return onPiece(mLit, first + static_cast<int>(k), s);
-            };
+            const auto at = [&](double s) { return onPiece(mLit, first + static_cast<int>(k), s); };
             Curve curve{.kind = kind,
                         .object = mLit.seen[static_cast<std::size_t>(piece.patch)].object};
             curve.points.push_back(at(from));
@@ -222,7 +219,7 @@ class EdgeWork {
     const LitPatches& mLit;
     const CurveSampling& mSampling;
     std::vector<std::vector<OnPatch>> mOnPatch;
-    std::vector<int> mFirst;                    // piece of each use, of all edges one after another
+    std::vector<int> mFirst;                   // piece of each use, of all edges one after another
     std::vector<std::vector<double>> mBreaks;  // of edges
 };
 

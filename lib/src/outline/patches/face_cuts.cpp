@@ -8,8 +8,8 @@
 namespace bandvox {
 namespace {
 
-constexpr double kLeaf = 1e-8;       // of parameters: so near there is one cut, or none
-constexpr double kExact = 1e-13;     // of the way between two points
+constexpr double kLeaf = 1e-8;        // of parameters: so near there is one cut, or none
+constexpr double kExact = 1e-13;      // of the way between two points
 constexpr int kMostQuestions = 4000;  // for two points, of a curve that runs along a loop
 
 /// Cuts one curve.
@@ -52,8 +52,7 @@ class CurveCut {
     bool isMeeting() const { return mCurve.points.front().rule == CurveRule::Meeting; }
 
     bool keeps(const CurvePoint& p) const {
-        return mFaces.keeps(p.patch, p.u, p.v) &&
-               (!isMeeting() || mFaces.keeps(p.other, p.s, p.t));
+        return mFaces.keeps(p.patch, p.u, p.v) && (!isMeeting() || mFaces.keeps(p.other, p.s, p.t));
     }
 
     // Whether loops may cut between two places; the curve is no farther from their chord than
@@ -123,9 +122,8 @@ std::vector<Curve> cutToFaces(std::vector<Curve> curves, const FaceRegions* face
     for (Curve& curve : curves) {
         if (curve.points.size() < 2) continue;
         const CurvePoint& first = curve.points.front();
-        const bool isTrimmed =
-            faces->isTrimmed(first.patch) ||
-            (first.rule == CurveRule::Meeting && faces->isTrimmed(first.other));
+        const bool isTrimmed = faces->isTrimmed(first.patch) ||
+                               (first.rule == CurveRule::Meeting && faces->isTrimmed(first.other));
         if (!isTrimmed) {
             result.push_back(std::move(curve));
         } else {

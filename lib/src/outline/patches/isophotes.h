@@ -15,8 +15,8 @@ namespace bandvox {
 /// Patches, as they are and as the page sees them, and a light.
 struct LitPatches {
     std::span<const BezierPatch> patches;
-    std::span<const ViewPatch> seen;  ///< one for each
-    Vec light{};                      ///< direction to it, world, length 1
+    std::span<const ViewPatch> seen;     ///< one for each
+    Vec light{};                         ///< direction to it, world, length 1
     const FaceRegions* faces = nullptr;  ///< none: no patch is a part of a face
 };
 

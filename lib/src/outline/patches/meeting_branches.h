@@ -20,7 +20,6 @@ struct MeetingPair {
 /// All branches of all pairs of patches, but for those of one shell. `size`: of the page.
 std::vector<MeetingPair> meetingBranches(std::span<const ViewPatch> seen,
                                          std::span<const SharedSide> sides, double size,
-                                         Progress& progress,
-                                         const FaceRegions* faces = nullptr);
+                                         Progress& progress, const FaceRegions* faces = nullptr);
 
 }  // namespace bandvox

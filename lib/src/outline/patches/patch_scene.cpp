@@ -34,8 +34,7 @@ class PatchReader final : public CurveReader {
         const double margin = kDepthMargin * mSize;
         if (point.rule != CurveRule::Edge) return mSheets.countBefore(point, margin);
         const EdgeFaces own = facesAt(mLit, point);
-        return mSheets.countBefore(point, margin, own.faces,
-                                   std::max(margin, kSteepest * own.gap));
+        return mSheets.countBefore(point, margin, own.faces, std::max(margin, kSteepest * own.gap));
     }
 
     double foldAt(const CurvePoint& point, bool isOther) override {

@@ -41,8 +41,7 @@ class SurfaceCurves {
         append(folds, borders.contours);
         std::vector<Curve> meetings;
         if (mOptions.intersections || mOptions.fill != OutlineFillKind::None) {
-            meetings =
-                cut(meetingCurves(mLit.seen, sides, mLit.faces, mSampling, mProgress));
+            meetings = cut(meetingCurves(mLit.seen, sides, mLit.faces, mSampling, mProgress));
         }
         for (auto* kind : {&folds, &borders.boundaries, &borders.creases, &meetings, &seams}) {
             join(std::move(*kind));
