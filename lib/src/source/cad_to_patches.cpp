@@ -19,7 +19,8 @@ void turn(CadFace& face) {
     control.reserve(net.control.size());
     for (int j = 0; j < net.count[1]; ++j) {
         for (int i = 0; i < net.count[0]; ++i) {
-            control.push_back(net.control[static_cast<std::size_t>(i * net.count[1] + j)]);
+            const auto row = static_cast<std::size_t>(i) * static_cast<std::size_t>(net.count[1]);
+            control.push_back(net.control[row + static_cast<std::size_t>(j)]);
         }
     }
     net.control = std::move(control);
