@@ -60,15 +60,15 @@ class OpenCascade final : public CadLibrary {
         Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
     }
 
-    CadShape read(const std::filesystem::path& path, Progress& progress) const override {
+    CadShape read(const std::filesystem::path& path, const InterruptCheck& check) const override {
         // Its readers have tables in common.
         static std::mutex mutex;
         const std::scoped_lock lock(mutex);
         try {
             const std::string extension = lowerExtension(path);
-            if (extension == ".brep") return readBrep(path, progress);
-            if (extension == ".iges" || extension == ".igs") return readIges(path, progress);
-            return readStep(path, progress);
+            if (extension == ".brep") return readBrep(path, check);
+            if (extension == ".iges" || extension == ".igs") return readIges(path, check);
+            return readStep(path, check);
         } catch (const Standard_Failure& failure) {
             const char* text = failure.GetMessageString();
             throw Error(ErrorKind::Input,
@@ -79,27 +79,27 @@ class OpenCascade final : public CadLibrary {
     }
 
   private:
-    static CadShape readBrep(const std::filesystem::path& path, Progress& progress) {
+    static CadShape readBrep(const std::filesystem::path& path, const InterruptCheck& check) {
         TopoDS_Shape shape;
         const BRep_Builder builder;
         if (!BRepTools::Read(shape, path.c_str(), builder) || shape.IsNull()) {
             throw Error(ErrorKind::Input, "is malformed; expected a whole BREP file");
         }
         return facesOf(
-            sewn(shape), [](const TopoDS_Shape&) { return std::string(); }, progress);
+            sewn(shape), [](const TopoDS_Shape&) { return std::string(); }, check);
     }
 
-    static CadShape readIges(const std::filesystem::path& path, Progress& progress) {
+    static CadShape readIges(const std::filesystem::path& path, const InterruptCheck& check) {
         IGESControl_Reader reader;
         requireDone(reader.ReadFile(path.c_str()), "IGES");
         reader.TransferRoots();
         const TopoDS_Shape shape = reader.OneShape();
         if (shape.IsNull()) return {};
         return facesOf(
-            sewn(shape), [](const TopoDS_Shape&) { return std::string(); }, progress);
+            sewn(shape), [](const TopoDS_Shape&) { return std::string(); }, check);
     }
 
-    static CadShape readStep(const std::filesystem::path& path, Progress& progress) {
+    static CadShape readStep(const std::filesystem::path& path, const InterruptCheck& check) {
         STEPControl_Reader reader;
         requireDone(reader.ReadFile(path.c_str()), "STEP");
         reader.TransferRoots();
@@ -111,7 +111,7 @@ class OpenCascade final : public CadLibrary {
             if (item.IsNull() || item->Name().IsNull()) return std::string();
             return std::string(item->Name()->ToCString());
         };
-        return facesOf(sewn(shape), nameOf, progress);
+        return facesOf(sewn(shape), nameOf, check);
     }
 };
 

@@ -134,8 +134,8 @@ std::vector<TopoDS_Edge> edgesOf(const TopoDS_Wire& wire, const TopoDS_Face& fac
 
 class FaceReader {
   public:
-    FaceReader(const TopoDS_Shape& shape, const ShapeNames& names, Progress& progress)
-        : mNames(names), mProgress(progress) {
+    FaceReader(const TopoDS_Shape& shape, const ShapeNames& names, const InterruptCheck& check)
+        : mNames(names), mCheck(check) {
         TopExp::MapShapes(shape, TopAbs_EDGE, mEdges);
         mShape.edges = mEdges.Extent();
         for (TopExp_Explorer walk(shape, TopAbs_SOLID); walk.More(); walk.Next()) {
@@ -165,7 +165,7 @@ class FaceReader {
     }
 
     void add(const TopoDS_Face& face) {
-        mProgress.throwIfInterrupted();
+        mCheck();
         const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
         if (surface.IsNull()) {
             throw Error(ErrorKind::Input,
@@ -222,7 +222,7 @@ class FaceReader {
     }
 
     const ShapeNames& mNames;
-    Progress& mProgress;
+    const InterruptCheck& mCheck;
     TopTools_IndexedMapOfShape mEdges;
     CadShape mShape;
     int mShell = 0;
@@ -230,8 +230,8 @@ class FaceReader {
 
 }  // namespace
 
-CadShape facesOf(const TopoDS_Shape& shape, const ShapeNames& names, Progress& progress) {
-    return FaceReader(shape, names, progress).take();
+CadShape facesOf(const TopoDS_Shape& shape, const ShapeNames& names, const InterruptCheck& check) {
+    return FaceReader(shape, names, check).take();
 }
 
 }  // namespace bandvox

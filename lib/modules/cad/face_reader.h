@@ -1,8 +1,6 @@
 #pragma once
 
-#include "source/cad_shape.h"
-
-#include <bandvox/core/progress.h>
+#include "source/cad_library.h"
 
 #include <TopoDS_Shape.hxx>
 #include <functional>
@@ -16,6 +14,6 @@ using ShapeNames = std::function<std::string(const TopoDS_Shape&)>;
 /// The faces of a shape, as B-spline surfaces and the wires around them. Each solid is an object,
 /// and so is each shell outside of solids. Throws Error(ErrorKind::Input) for what cannot be made
 /// patches. May throw Standard_Failure.
-CadShape facesOf(const TopoDS_Shape& shape, const ShapeNames& names, Progress& progress);
+CadShape facesOf(const TopoDS_Shape& shape, const ShapeNames& names, const InterruptCheck& check);
 
 }  // namespace bandvox

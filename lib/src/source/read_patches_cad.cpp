@@ -60,7 +60,7 @@ PatchModel readCadPatches(const std::filesystem::path& path, Progress& progress)
     const FileContents file{path, {}};
     requireWholeFile(readFile(path));
     try {
-        CadShape shape = cadLibrary().read(path, progress);
+        CadShape shape = cadLibrary().read(path, [&] { progress.throwIfInterrupted(); });
         for (std::string& name : shape.objects) {
             if (name.empty()) name = path.stem().string();
         }
