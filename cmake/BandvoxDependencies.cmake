@@ -22,3 +22,16 @@ find_package(OpenImageIO REQUIRED CONFIG)
 find_package(DCMTK REQUIRED CONFIG)
 bandvox_mend_openimageio()
 bandvox_find_openvdb(REQUIRED)
+
+# Open CASCADE's own description asks for all of its libraries, down to those of its test harness.
+if(BANDVOX_WITH_OPENCASCADE)
+    find_path(BANDVOX_OPENCASCADE_INCLUDE_DIR STEPControl_Reader.hxx
+        PATH_SUFFIXES opencascade REQUIRED)
+    set(BANDVOX_OPENCASCADE_LIBRARIES "")
+    foreach(_name TKSTEP TKSTEPBase TKIGES TKXSBase TKTopAlgo TKBRep TKGeomAlgo TKGeomBase TKG3d
+        TKG2d TKMath TKernel)
+        find_library(BANDVOX_OPENCASCADE_${_name} ${_name} REQUIRED)
+        mark_as_advanced(BANDVOX_OPENCASCADE_${_name})
+        list(APPEND BANDVOX_OPENCASCADE_LIBRARIES ${BANDVOX_OPENCASCADE_${_name}})
+    endforeach()
+endif()

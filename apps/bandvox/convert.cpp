@@ -108,7 +108,8 @@ const CommandTable& convertTable() {
             "stacks "
             "of images and DICOM series come in as grids, and grids go out as arrays and stacks.",
             {{"INPUT",
-              "A mesh (.obj, .ply, .stl, .gltf, ...), free-form surfaces (.bpt, .obj), a .vdb file "
+              "A mesh (.obj, .ply, .stl, .gltf, ...), free-form surfaces (.bpt, .obj, .step), a "
+              ".vdb file "
               "(stdin.vdb is the standard "
               "input), an array (.npy, .nrrd, .nhdr, .mha, .mhd), slices (a folder or a pattern "
               "of images, slice.####.tif, or a .tif file with pages), a folder or a file of DICOM, "

@@ -15,6 +15,7 @@
 #include <bandvox/source/array_source.h>
 #include <bandvox/source/point_cloud.h>
 #include <bandvox/source/read_mesh.h>
+#include <bandvox/source/read_patches.h>
 
 #include <nlohmann/json.hpp>
 
@@ -266,7 +267,7 @@ bool asksForFrames(const CommandLine& line) {
     if (hasFrame(output) && !isWritableImage(output)) return true;
     // Of other kinds of files, many may be one input.
     const std::string& input = line.positional(0);
-    const bool isWhole = isMeshFile(input) || extensionOf(input) == ".bpt" ||
+    const bool isWhole = isMeshFile(input) || extensionOf(input) == ".bpt" || isCadFile(input) ||
                          extensionOf(input) == ".vdb" || isArrayFile(input) ||
                          isPointCloudFile(input);
     return isWhole && hasFrame(input);

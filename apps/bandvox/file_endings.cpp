@@ -3,6 +3,7 @@
 #include <bandvox/mesh/write_mesh.h>
 #include <bandvox/source/point_cloud.h>
 #include <bandvox/source/read_mesh.h>
+#include <bandvox/source/read_patches.h>
 #include <bandvox/source/shapes.h>
 
 namespace bandvox::app {
@@ -25,6 +26,7 @@ std::vector<std::string> vdbAndMeshEndings() {
 std::vector<std::string> convertibleEndings() {
     std::vector<std::string> endings = vdbAndMeshEndings();
     endings.emplace_back(".bpt");
+    appendEndings(endings, cadExtensions());
     appendEndings(endings, pointCloudExtensions());
     appendEndings(endings, kArrayEndings);
     appendEndings(endings, {".tif", ".tiff", ".png", ".exr", ".dcm"});

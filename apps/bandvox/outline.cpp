@@ -11,6 +11,7 @@
 #include <bandvox/outline/patches_to_outline.h>
 #include <bandvox/outline/volumes_to_outline.h>
 #include <bandvox/outline/write_outline.h>
+#include <bandvox/source/read_patches.h>
 
 #include <nlohmann/json.hpp>
 
@@ -39,6 +40,7 @@ const std::vector<std::string> kFillKinds{"none", "flat", "toon"};
 std::vector<std::string> outlineEndings() {
     std::vector<std::string> endings = vdbAndMeshEndings();
     endings.emplace_back(".bpt");
+    endings.insert(endings.end(), cadExtensions().begin(), cadExtensions().end());
     return endings;
 }
 
@@ -58,8 +60,9 @@ const CommandTable& outlineTable() {
             "what is hidden is found by lines of sight to the surfaces. Visible and hidden lines "
             "are layers of the drawing.",
             {{"INPUT",
-              "Newell's .bpt, or .obj with free-form surfaces (cstype bezier or bspline); a .vdb; "
-              "a mesh or a built-in shape; several of them are one scene.",
+              "Newell's .bpt, or .obj with free-form surfaces (cstype bezier or bspline); parts as "
+              ".step, .stp, .iges, .igs or .brep, where Open CASCADE was built in; a .vdb; a mesh "
+              "or a built-in shape; several of them are one scene.",
               true,
               {.words = shapeWords(), .endings = outlineEndings()}}},
             {

@@ -30,7 +30,8 @@ OutlineInputKind kindOf(const std::string& input) {
     if (isShape(input) || isMeshFile(input)) return OutlineInputKind::Solid;
     throw Error(ErrorKind::Input, "cannot draw '" + input +
                                       "', by its name; expected a .vdb, free-form surfaces (.bpt, "
-                                      ".obj), a mesh (" +
+                                      ".obj, " +
+                                      joined(cadExtensions(), " ") + "), a mesh (" +
                                       joined(meshExtensions(), " ") +
                                       ") or a built-in shape (shape:torus)");
 }

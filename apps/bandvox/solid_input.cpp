@@ -82,7 +82,7 @@ PositionalEntry solidInputEntry() {
 
 bool isPatchFile(const std::string& input) {
     if (isShape(input) || !mayHoldPatches(input)) return false;
-    return extensionOf(input) == ".bpt" ||
+    return extensionOf(input) != ".obj" ||
            (std::filesystem::is_regular_file(input) && hasFreeForm(input));
 }
 
@@ -98,7 +98,7 @@ PatchSolid loadPatchSolid(CommandRun& run, const std::string& input,
     run.count("objects", model.objects.size());
     run.warn(model.warnings, ErrorKind::Input);
     PatchSolid solid = makePatchSolid(std::filesystem::path(input).filename().string(),
-                                      std::move(model.patches), options, run.progress());
+                                      std::move(model), options, run.progress());
     const PatchSolidReport& report = solid.report;
     std::vector<std::string> parts{count(report.pieces, "piece", "pieces")};
     if (report.patchesFlipped > 0) {

@@ -365,8 +365,9 @@ void bindOutline(py::module_& module) {
         py::arg("threads") = 0, py::arg("progress") = py::none(),
         R"(Draws free-form surfaces and volumes as lines; returns a Drawing.
 
-source: Patches, a .bpt or .obj file of them, a Grid, or a list of such. iso: the value of grids
-that is the surface, as of to_mesh. isophotes: lines where the cosine of the angle between the normal and the direction to the light is one of
+source: Patches, a file of them (.bpt, .obj, .step, .iges or .brep), a Grid, or a list of such. iso: the value of
+grids that is the surface, as of to_mesh. isophotes: lines where the cosine of the angle between the normal and the
+direction to the light is one of
 these; light: along the camera's right, up and back. suggestive: of grids, draw suggestive contours of at
 least this strength, as in 20. fill: what is between lines, 'none', 'flat', a
 colour for each object, or 'toon', tones of it; tones: cosines of that angle at which they change,

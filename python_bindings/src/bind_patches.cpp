@@ -176,8 +176,12 @@ v, one more than the degree. objects: the name of the object that each patch bel
 
 control: (u, v, 3), or homogeneous (u, v, 4). knots: as many as control points, the degree and one,
 not descending; so their number says what the degree is.)")
-        .def_static("read", &readPatchesObject, py::arg("path"),
-                    "Reads Newell's .bpt, or the free-form surfaces of an .obj. Raises InputError.")
+        .def_static(
+            "read", &readPatchesObject, py::arg("path"),
+            R"(Reads Newell's .bpt, the free-form surfaces of an .obj, or a part of a CAD program.
+
+That is a .step, .stp, .iges, .igs or .brep file, where Open CASCADE was built in: patches then are the
+surfaces that faces lie on, of which outline draws what belongs to the faces. Raises InputError.)")
         .def_property_readonly("nets", &netsOf,
                                "(u, v, 4) float64 for each: (w x, w y, w z, w), world units.")
         .def_property_readonly("objects", &objectsOf, "The name of each patch's object.")

@@ -397,7 +397,14 @@ TEST(Outline, RefusesBrokenFiles) {
         {"a.obj", replaced(kCylinder, "parm u 0 1", "trim 0 1 1"), "trims"},
         {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "the mesh is flat", 4},
         {"a.obj", "surf 0 1 0 1 1 2 3 4\n", "line 1"},
-        {"a.txt", kFlatPatch, "expected a .vdb, free-form surfaces (.bpt, .obj), a mesh"},
+        {"a.step", "", "is empty"},
+        {"a.step", "ISO-10303-21;\nHEADER;\n", "ends before END-ISO-10303-21"},
+        {"a.igs", kFlatPatch, "expected an IGES file"},
+        {"a.brep", kFlatPatch, "expected a BREP file"},
+#ifndef BANDVOX_WITH_OPENCASCADE
+        {"a.stp", "ISO-10303-21;\nEND-ISO-10303-21;\n", "scripts/setup --cad"},
+#endif
+        {"a.txt", kFlatPatch, "expected a .vdb, free-form surfaces (.bpt, .obj, .step"},
     };
     for (const Broken& broken : all) {
         const TemporaryFolder folder;

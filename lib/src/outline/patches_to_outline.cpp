@@ -37,7 +37,9 @@ Outline patchesToOutline(const PatchModel& model, const OutlineOptions& options,
     const CurveSampling sampling = samplingFor(options);
     const ViewMatrix view = pageView(model.patches, options);
     const std::vector<ViewPatch> seen = seenBy(view, model.patches, sampling.size);
-    const LitPatches lit{model.patches, seen, lightDirection(contentOf(model.patches), options)};
+    const FaceRegions faces(model.topology);
+    const LitPatches lit{model.patches, seen, lightDirection(contentOf(model.patches), options),
+                         model.topology.faces.empty() ? nullptr : &faces};
     const std::vector<Curve> curves = surfaceCurves(lit, options, sampling, progress);
     Outline outline = drawCurves(curves, PatchScene(lit, sampling.size), options, progress);
     outline.objects = model.objects;

@@ -90,6 +90,7 @@ PatchJet evaluate(const BezierPatch& patch, double u, double v) {
 
 void PatchModel::append(PatchModel other) {
     const int shift = static_cast<int>(objects.size());
+    topology.append(std::move(other.topology), patches.size(), other.patches.size());
     for (BezierPatch& patch : other.patches) {
         patch.object += shift;
         patches.push_back(std::move(patch));

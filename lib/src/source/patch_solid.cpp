@@ -1,6 +1,7 @@
 #include "core/words.h"
 #include "source/close_patches.h"
 #include "source/compensated_sum.h"
+#include "source/face_solid.h"
 #include "source/free_form_patch.h"
 #include "source/patch_source.h"
 #include "source/patch_trim.h"
@@ -294,6 +295,18 @@ PatchSolid makePatchSolid(const std::string& name, std::vector<BezierPatch> patc
     describePieces(report, report.warnings);
     solid.source = std::move(source);
     return solid;
+}
+
+PatchSolid makePatchSolid(const std::string& name, PatchModel model,
+                          const PatchSolidOptions& options, Progress& progress) {
+    if (model.topology.faces.empty()) {
+        return makePatchSolid(name, std::move(model.patches), options, progress);
+    }
+    if (options.base) {
+        throw Error(ErrorKind::Usage, "a base is for a surface over a plane, and '" + name +
+                                          "' is a part with faces of its own; expected none");
+    }
+    return makeFaceSolid(name, std::move(model), progress);
 }
 
 }  // namespace bandvox

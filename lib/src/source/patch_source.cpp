@@ -22,9 +22,12 @@ constexpr int kDeepestCellSplit = 64;
 /// Longest side of a cell that others may cut, voxels.
 constexpr double kCutCell = 1.0;
 
-/// Diagonal of a cell, voxels, at which its turning does not count any more: beside a point that a
-/// side has collapsed to, all that is left of directions is rounding.
-constexpr double kSmallCell = 0.25;
+/// Sides that are shorter are points, voxels.
+constexpr double kPointSide = 1e-9;
+
+/// Cells that others may cut and that are shorter than this are taken as they are, voxels: beside
+/// a side that is a point directions turn however small a cell is.
+constexpr double kTinyCutCell = 0.02;
 
 /// What stays the same while a patch is being split.
 struct PatchSampling {
@@ -33,12 +36,13 @@ struct PatchSampling {
     const SurfaceQuadrature& quadrature;
     RegionClip clip;
     std::vector<SurfaceSample>& samples;
-    const PatchTrim* trim = nullptr;  ///< null where all of the patch counts
+    const CellTrim* trim = nullptr;  ///< null where all of the patch counts
 };
 
 /// How large a cell is for quadrature along each parameter: voxels, turning included.
 struct CellSize {
     double u = 0, v = 0;
+    double length = 0;  ///< of the longer side, without turning
 };
 
 /// By how much the direction from a to b to c turns, radians; 0 where there is no direction.
@@ -67,14 +71,20 @@ CellSize measure(const ParameterCell& cell, const PatchSampling& sampling) {
     const double vScale = (cell.v1 - cell.v0) / sampling.voxelSize;
     CellSize size;
     for (int i = 0; i < 3; ++i) {
-        const double uTurn = std::max(turning(p[0][i].du, p[1][i].du, p[2][i].du),
-                                      turning(p[0][i].dv, p[1][i].dv, p[2][i].dv));
-        const double vTurn = std::max(turning(p[i][0].du, p[i][1].du, p[i][2].du),
-                                      turning(p[i][0].dv, p[i][1].dv, p[i][2].dv));
-        size.u = std::max(size.u, uScale * simpson(p[0][i].du, p[1][i].du, p[2][i].du) +
-                                      kVoxelsPerRadian * uTurn);
-        size.v = std::max(size.v, vScale * simpson(p[i][0].dv, p[i][1].dv, p[i][2].dv) +
-                                      kVoxelsPerRadian * vTurn);
+        const double uLength = uScale * simpson(p[0][i].du, p[1][i].du, p[2][i].du);
+        const double vLength = vScale * simpson(p[i][0].dv, p[i][1].dv, p[i][2].dv);
+        double uTurn = turning(p[0][i].dv, p[1][i].dv, p[2][i].dv);
+        double vTurn = turning(p[i][0].du, p[i][1].du, p[i][2].du);
+        // Along a side that is a point rounding alone has a direction.
+        if (uLength > kPointSide) {
+            uTurn = std::max(uTurn, turning(p[0][i].du, p[1][i].du, p[2][i].du));
+        }
+        if (vLength > kPointSide) {
+            vTurn = std::max(vTurn, turning(p[i][0].dv, p[i][1].dv, p[i][2].dv));
+        }
+        size.u = std::max(size.u, uLength + kVoxelsPerRadian * uTurn);
+        size.v = std::max(size.v, vLength + kVoxelsPerRadian * vTurn);
+        size.length = std::max({size.length, uLength, vLength});
     }
     return size;
 }
@@ -104,9 +114,9 @@ void applyRules(int uRule, int vRule, const ParameterCell& cell, const PatchSamp
 }
 
 /// Of a cell that others may cut.
-void applyTrimmedRule(const CellTrim& trim, const PatchSampling& sampling) {
+void applyTrimmedRule(const ParameterCell& cell, const PatchSampling& sampling) {
     const double lengthScale = 1.0 / sampling.voxelSize;
-    for (const TrimmedPoint& t : trimmedRule(trim)) {
+    for (const TrimmedPoint& t : sampling.trim->rule(sampling.patch, cell)) {
         const PatchPoint p = sampling.patch.at(t.u, t.v);
         sampling.clip.append(p.position * lengthScale,
                              (t.weight * lengthScale * lengthScale) * p.du.cross(p.dv),
@@ -122,21 +132,22 @@ void sampleCell(const ParameterCell& cell, int depth, const PatchSampling& sampl
     }
 
     // See what a union leaves of it.
-    const CellSize size = measure(cell, sampling);
     if (sampling.trim != nullptr) {
-        const CellTrim trim(*sampling.trim, sampling.patch, cell);
-        if (trim.isUniform()) {
-            if (!trim.keeps(cell.u0, cell.v0)) return;
+        const CellTrim::Share share = sampling.trim->share(sampling.patch, cell);
+        if (share == CellTrim::Share::None) return;
+        if (share == CellTrim::Share::All) {
             PatchSampling whole = sampling;
             whole.trim = nullptr;
             sampleCell(cell, depth, whole);
             return;
         }
-        const bool isSmall = box.extents().length() <= kSmallCell * sampling.voxelSize;
-        if (isSmall || std::max(size.u, size.v) <= kCutCell) {
-            applyTrimmedRule(trim, sampling);
-            return;
-        }
+    }
+
+    const CellSize size = measure(cell, sampling);
+    const bool isSmall = std::max(size.u, size.v) <= kCutCell || size.length <= kTinyCutCell;
+    if (sampling.trim != nullptr && isSmall) {
+        applyTrimmedRule(cell, sampling);
+        return;
     }
     const int uRule = lowestIntervalRule(sampling.quadrature, size.u);
     const int vRule = lowestIntervalRule(sampling.quadrature, size.v);
@@ -162,7 +173,7 @@ void sampleCell(const ParameterCell& cell, int depth, const PatchSampling& sampl
 
 }  // namespace
 
-void samplePatch(const Patch& patch, const PatchTrim* trim, const SamplingRegion& region,
+void samplePatch(const Patch& patch, const CellTrim* trim, const SamplingRegion& region,
                  const SurfaceQuadrature& quadrature, std::vector<SurfaceSample>& samples) {
     sampleCell({}, 0, {patch, region.voxelSize, quadrature, RegionClip(region), samples, trim});
 }

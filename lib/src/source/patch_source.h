@@ -1,7 +1,7 @@
 #pragma once
 
+#include "source/cell_trim.h"
 #include "source/patch.h"
-#include "source/patch_trim.h"
 
 #include <bandvox/source/boundary_source.h>
 
@@ -11,7 +11,7 @@ namespace bandvox {
 
 /// Appends the quadrature points of what `trim` leaves of a patch, all of it if null, as
 /// BoundarySource::sampleElement does.
-void samplePatch(const Patch& patch, const PatchTrim* trim, const SamplingRegion& region,
+void samplePatch(const Patch& patch, const CellTrim* trim, const SamplingRegion& region,
                  const SurfaceQuadrature& quadrature, std::vector<SurfaceSample>& samples);
 
 /// A closed surface made of smooth patches, sampled as it is, without tessellation.

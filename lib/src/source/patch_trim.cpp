@@ -6,6 +6,31 @@
 #include <array>
 
 namespace bandvox {
+
+/// One cell of a patch in a union. Pieces that are not near it wind as often around all of it, and
+/// are asked once.
+class PieceCell {
+  public:
+    PieceCell(const PatchTrim& trim, const Patch& patch, const ParameterCell& cell);
+
+    const ParameterCell& cell() const { return mCell; }
+
+    /// True if no other piece is near: all points of the cell are left, or none.
+    bool isUniform() const { return mNear.empty(); }
+
+    /// True if the point of the cell is left.
+    bool keeps(double u, double v) const;
+
+  private:
+    openvdb::Vec3d normalAt(const PatchPoint& p, double u, double v) const;
+
+    const PatchTrim& mTrim;
+    const Patch& mPatch;
+    ParameterCell mCell;
+    int mAround;  // how often its own piece, seen from before it, and those that are not near wind
+    std::vector<std::size_t> mNear;
+};
+
 namespace {
 
 using openvdb::Vec3d;
@@ -16,7 +41,7 @@ constexpr int kCutRule = 4;         ///< number of intervalRule: its points less
 
 /// A cell with its parameters from 0 to 1, exchanged if the cut runs along v.
 struct CellFrame {
-    const CellTrim& trim;
+    const PieceCell& trim;
     bool exchanged = false;
 
     TrimmedPoint at(double across, double along, double weight) const {
@@ -89,7 +114,7 @@ std::vector<TrimmedPoint> wholeRule(const CellFrame& frame) {
 
 }  // namespace
 
-CellTrim::CellTrim(const PatchTrim& trim, const Patch& patch, const ParameterCell& cell)
+PieceCell::CellTrim(const PatchTrim& trim, const Patch& patch, const ParameterCell& cell)
     : mTrim(trim), mPatch(patch), mCell(cell), mAround(trim.mPieces[trim.mOwn].isCavity ? -1 : 0) {
     openvdb::BBoxd box = patch.bounds(cell);
     box.expand(trim.mDistance);
@@ -106,7 +131,7 @@ CellTrim::CellTrim(const PatchTrim& trim, const Patch& patch, const ParameterCel
 }
 
 // Where a side of the patch has collapsed there is no normal but beside it.
-Vec3d CellTrim::normalAt(const PatchPoint& p, double u, double v) const {
+Vec3d PieceCell::normalAt(const PatchPoint& p, double u, double v) const {
     Vec3d normal = p.du.cross(p.dv);
     const double speed =
         std::max(p.du.length() * (mCell.u1 - mCell.u0), p.dv.length() * (mCell.v1 - mCell.v0));
@@ -122,7 +147,7 @@ Vec3d CellTrim::normalAt(const PatchPoint& p, double u, double v) const {
     return normal;
 }
 
-bool CellTrim::keeps(double u, double v) const {
+bool PieceCell::keeps(double u, double v) const {
     int before = mAround, behind = mAround + 1;
     if (!mNear.empty()) {
         const PatchPoint p = mPatch.at(u, v);
@@ -139,7 +164,14 @@ bool CellTrim::keeps(double u, double v) const {
     return before <= 0 && behind >= 1;
 }
 
-std::vector<TrimmedPoint> trimmedRule(const CellTrim& trim) {
+PatchTrim::Share PatchTrim::share(const Patch& patch, const ParameterCell& cell) const {
+    const PieceCell piece(*this, patch, cell);
+    if (!piece.isUniform()) return Share::Unknown;
+    return piece.keeps(cell.u0, cell.v0) ? Share::All : Share::None;
+}
+
+std::vector<TrimmedPoint> PatchTrim::rule(const Patch& patch, const ParameterCell& cell) const {
+    const PieceCell trim(*this, patch, cell);
     // See which way the cut runs.
     CellFrame frame{trim};
     std::array<std::array<bool, kProbes>, kProbes> kept{};

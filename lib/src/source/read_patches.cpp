@@ -6,6 +6,7 @@
 #include <bandvox/core/error.h>
 #include <bandvox/source/read_patches.h>
 
+#include <algorithm>
 #include <string>
 
 namespace bandvox {
@@ -54,7 +55,18 @@ int degreeFrom(NumberWalk& numbers, const std::string& what) {
 
 bool mayHoldPatches(const std::filesystem::path& path) {
     const std::string extension = lowerExtension(path);
-    return extension == ".bpt" || extension == ".obj";
+    return extension == ".bpt" || extension == ".obj" || isCadFile(path);
+}
+
+bool isCadFile(const std::filesystem::path& path) {
+    const std::string extension = lowerExtension(path);
+    const auto& known = cadExtensions();
+    return std::find(known.begin(), known.end(), extension) != known.end();
+}
+
+const std::vector<std::string>& cadExtensions() {
+    static const std::vector<std::string> extensions{".step", ".stp", ".iges", ".igs", ".brep"};
+    return extensions;
 }
 
 bool hasFreeForm(const std::filesystem::path& obj) {
@@ -101,8 +113,10 @@ PatchModel readPatches(const std::filesystem::path& path, Progress& progress) {
     const std::string extension = lowerExtension(path);
     if (extension == ".bpt") return readBptPatches(readFile(path), progress);
     if (extension == ".obj") return readObjPatches(readFile(path), progress);
+    if (isCadFile(path)) return readCadPatches(path, progress);
     throw Error(ErrorKind::Input, "\"" + path.string() +
-                                      "\" is no file of free-form surfaces; expected .bpt or .obj");
+                                      "\" is no file of free-form surfaces; expected .bpt, .obj, "
+                                      ".step, .stp, .iges, .igs or .brep");
 }
 
 }  // namespace bandvox

@@ -9,5 +9,6 @@ namespace bandvox {
 
 PatchModel readBptPatches(const FileContents& file, Progress& progress);
 PatchModel readObjPatches(const FileContents& file, Progress& progress);
+PatchModel readCadPatches(const std::filesystem::path& path, Progress& progress);
 
 }  // namespace bandvox

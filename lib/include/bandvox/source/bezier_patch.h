@@ -1,5 +1,7 @@
 #pragma once
 
+#include <bandvox/source/face_topology.h>
+
 #include <array>
 #include <cstddef>
 #include <string>
@@ -44,8 +46,9 @@ struct PatchModel {
     std::vector<BezierPatch> patches;
     std::vector<std::string> objects;   ///< at least one if there are patches
     std::vector<std::string> warnings;  ///< what a reader left out
+    FaceTopology topology;              ///< of patches that are trimmed faces; else empty
 
-    /// Adds the patches, objects and warnings of another model.
+    /// Adds the patches, objects, warnings and faces of another model.
     void append(PatchModel other);
 };
 

@@ -60,4 +60,11 @@ PatchSolid makePatchSolid(const std::string& name, std::vector<BezierPatch> patc
                           const PatchSolidOptions& options = {},
                           Progress& progress = silentProgress());
 
+/// The same of a model. The shells of trimmed faces have to be closed; they are neither joined nor
+/// capped, they add up where they overlap, and volume and area are known to 1e-6. Also throws
+/// Error(ErrorKind::Result) for open shells, and Error(ErrorKind::Usage) for a base of such.
+PatchSolid makePatchSolid(const std::string& name, PatchModel model,
+                          const PatchSolidOptions& options = {},
+                          Progress& progress = silentProgress());
+
 }  // namespace bandvox

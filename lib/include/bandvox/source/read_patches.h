@@ -4,11 +4,20 @@
 #include <bandvox/source/bezier_patch.h>
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace bandvox {
 
-/// True if a file of this name may hold free-form surfaces: .bpt, and .obj.
+/// True if a file of this name may hold free-form surfaces: .bpt, .obj, and those of
+/// cadExtensions().
 bool mayHoldPatches(const std::filesystem::path& path);
+
+/// True if a file of this name is one of a program for constructions.
+bool isCadFile(const std::filesystem::path& path);
+
+/// Their extensions: ".step", ".stp", ".iges", ".igs", ".brep".
+const std::vector<std::string>& cadExtensions();
 
 /// True if an .obj file has a free-form surface.
 bool hasFreeForm(const std::filesystem::path& obj);
@@ -18,6 +27,10 @@ bool hasFreeForm(const std::filesystem::path& obj);
 /// .bpt: Newell's format, the number of patches, and for each of them its two degrees and the
 /// control points, row by row. .obj: Wavefront's free-form surfaces of cstype bezier and bspline,
 /// rational or not; faces and curves are left out with a warning.
+///
+/// .step, .stp, .iges, .igs, .brep: the faces of solids and shells, each the surface that it lies
+/// on, as rational patches, and the loops that trim it; millimetres, but for .brep, which has no
+/// unit. Surfaces at a distance of others are approximated. Needs a build with Open CASCADE.
 ///
 /// Throws Error(ErrorKind::Input), naming the line, for what is malformed, truncated, trimmed, of
 /// degree 0 or with a weight that is not above 0.

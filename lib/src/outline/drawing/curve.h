@@ -15,6 +15,7 @@ enum class CurveRule {
     Border,          ///< a straight line of the patch's parameters
     Meeting,         ///< in two patches
     Isophote,        ///< of one angle to the light on a patch
+    Edge,            ///< an edge of a face
     Piercing,        ///< on a patch where it passes through the surface of a volume
     VolumeFold,      ///< ∇f~·v = 0 on a volume's surface
     VolumeMeeting,   ///< in the surfaces of two volumes
@@ -30,7 +31,8 @@ inline bool isOfVolume(CurveRule rule) {
 /// A point of a curve on patches, where the view sees it. Of a curve on a volume's surface `patch`
 /// is the number of that volume, `other` that of the other one of an intersection, (u, v, s) the
 /// place in index coordinates; where a patch passes through a volume `other` is the volume's. Of an
-/// isophote t is the cosine that makes it.
+/// isophote t is the cosine that makes it. Of an edge `other` is the number of its piece, s the
+/// parameter along that.
 struct CurvePoint {
     double x = 0, y = 0, z = 0;  ///< on the page, and depth
     double tx = 1, ty = 0;       ///< direction of the curve on the page, length 1, without a sign

@@ -1,5 +1,7 @@
 #include "outline/patches/border_curves.h"
 
+#include "outline/patches/line_sampler.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,7 +25,8 @@ class SideSampler {
         Curve curve{.kind = kind, .object = mSeen[static_cast<std::size_t>(side.patch)].object};
         const CurvePoint first = at(side, t0);
         curve.points.push_back(first);
-        refine(side, {t0, t1}, first, at(side, t1), 0, curve.points);
+        const auto place = [&](double t) { return at(side, t); };
+        LineSampler(place, mSampling).refine({t0, t1}, first, at(side, t1), 0, curve.points);
         return curve;
     }
 
@@ -50,29 +53,6 @@ class SideSampler {
     }
 
   private:
-    void refine(const PatchSide& side, std::array<double, 2> range, const CurvePoint& a,
-                const CurvePoint& b, int depth, std::vector<CurvePoint>& points) const {
-        const double half = 0.5 * (range[0] + range[1]);
-        const CurvePoint middle = at(side, half);
-        const double dx = b.x - a.x, dy = b.y - a.y;
-        const double length = std::hypot(dx, dy);
-        const double off = std::abs(dx * (middle.y - a.y) - dy * (middle.x - a.x)) /
-                           std::max(length, 1e-12 * mSampling.size);
-        // Directions have the same sense all along a side: opposite ones tell of a turn back. A
-        // side that is seen as a point has no direction.
-        const bool isSmooth =
-            a.tx * b.tx + a.ty * b.ty > 0.98 || (depth > 10 && length < 0.1 * mSampling.flatness);
-        const bool isFlat = off < mSampling.flatness &&
-                            bowBetween(a, b) < 1.3 * mSampling.flatness &&
-                            length < 0.02 * mSampling.size && isSmooth;
-        if (depth > 24 || (isFlat && depth > 2)) {
-            points.push_back(b);
-            return;
-        }
-        refine(side, {range[0], half}, a, middle, depth + 1, points);
-        refine(side, {half, range[1]}, middle, b, depth + 1, points);
-    }
-
     std::span<const ViewPatch> mSeen;
     CurveSampling mSampling;
 };

@@ -3,6 +3,7 @@
 #include "outline/drawing/curve.h"
 #include "outline/patches/vectors.h"
 #include "outline/patches/view_patch.h"
+#include "source/face_regions.h"
 
 #include <bandvox/source/bezier_patch.h>
 
@@ -14,8 +15,9 @@ namespace bandvox {
 /// Patches, as they are and as the page sees them, and a light.
 struct LitPatches {
     std::span<const BezierPatch> patches;
-    std::span<const ViewPatch> seen;  ///< one for each
-    Vec light{};                      ///< direction to it, world, length 1
+    std::span<const ViewPatch> seen;     ///< one for each
+    Vec light{};                         ///< direction to it, world, length 1
+    const FaceRegions* faces = nullptr;  ///< none: no patch is a part of a face
 };
 
 /// The cosine of the angle between the light and the normal that faces the eye; 0 where a patch

@@ -91,8 +91,14 @@ class PairWork {
 /// Finds the branches of all pairs, and follows them from patch to patch.
 class BranchSearch {
   public:
-    BranchSearch(std::span<const ViewPatch> seen, std::span<const SharedSide> sides, double size)
-        : mSeen(seen), mSize(size), mCells(seen.size()) {
+    BranchSearch(std::span<const ViewPatch> seen, std::span<const SharedSide> sides,
+                 const FaceRegions* faces, double size)
+        : mSeen(seen), mSize(size), mCells(seen.size()), mShells(seen.size(), -1) {
+        for (std::size_t k = 0; k < seen.size(); ++k) {
+            const int face = placeOf(faces, static_cast<int>(k)).face;
+            if (face < 0) continue;
+            mShells[k] = faces->topology().faces[static_cast<std::size_t>(face)].shell;
+        }
         parallelFor(static_cast<std::int64_t>(seen.size()), [&](std::int64_t k) {
             mCells[static_cast<std::size_t>(k)] =
                 cellOf(seen[static_cast<std::size_t>(k)], static_cast<int>(k));
@@ -130,6 +136,10 @@ class BranchSearch {
 
     static SideKey keyOf(const PatchSide& side) { return {side.patch, side.side}; }
     const PatchCell& cell(int k) const { return mCells[static_cast<std::size_t>(k)]; }
+    bool areOfOneShell(int a, int b) const {
+        const int shell = mShells[static_cast<std::size_t>(a)];
+        return shell >= 0 && shell == mShells[static_cast<std::size_t>(b)];
+    }
 
     // Pairs of patches whose boxes have a part in common, by sweeping along x.
     void listPairs() {
@@ -147,7 +157,7 @@ class BranchSearch {
                 if (b.low[0] > a.high[0]) break;
                 const bool isApart = a.low[1] > b.high[1] || b.low[1] > a.high[1] ||
                                      a.low[2] > b.high[2] || b.low[2] > a.high[2];
-                if (isApart) continue;
+                if (isApart || areOfOneShell(order[i], order[j])) continue;
                 mPairs.push_back({std::min(order[i], order[j]), std::max(order[i], order[j]), {}});
             }
         }
@@ -210,6 +220,7 @@ class BranchSearch {
     std::span<const ViewPatch> mSeen;
     double mSize;
     std::vector<PatchCell> mCells;
+    std::vector<int> mShells;  // of patches; -1: of none
     std::map<SideKey, std::vector<Beside>> mBeside;
     std::vector<MeetingPair> mPairs;
     std::map<std::pair<int, int>, std::size_t> mPairOf;
@@ -220,8 +231,8 @@ class BranchSearch {
 
 std::vector<MeetingPair> meetingBranches(std::span<const ViewPatch> seen,
                                          std::span<const SharedSide> sides, double size,
-                                         Progress& progress) {
-    return BranchSearch(seen, sides, size).search(progress);
+                                         Progress& progress, const FaceRegions* faces) {
+    return BranchSearch(seen, sides, faces, size).search(progress);
 }
 
 }  // namespace bandvox

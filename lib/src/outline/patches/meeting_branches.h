@@ -17,9 +17,9 @@ struct MeetingPair {
     std::vector<MeetingBranch> branches;
 };
 
-/// All branches of all pairs of patches, `size`: of the page.
+/// All branches of all pairs of patches, but for those of one shell. `size`: of the page.
 std::vector<MeetingPair> meetingBranches(std::span<const ViewPatch> seen,
                                          std::span<const SharedSide> sides, double size,
-                                         Progress& progress);
+                                         Progress& progress, const FaceRegions* faces = nullptr);
 
 }  // namespace bandvox

@@ -67,10 +67,11 @@ class MeetingTracer {
 }  // namespace
 
 std::vector<Curve> meetingCurves(std::span<const ViewPatch> seen, std::span<const SharedSide> sides,
-                                 const CurveSampling& sampling, Progress& progress) {
+                                 const FaceRegions* faces, const CurveSampling& sampling,
+                                 Progress& progress) {
     std::vector<Curve> curves;
     const MeetingTracer tracer(seen, sampling);
-    for (const MeetingPair& pair : meetingBranches(seen, sides, sampling.size, progress)) {
+    for (const MeetingPair& pair : meetingBranches(seen, sides, sampling.size, progress, faces)) {
         for (const MeetingBranch& branch : pair.branches) {
             Curve curve = tracer.trace(pair, branch);
             if (curve.points.size() > 1) curves.push_back(std::move(curve));

@@ -1,6 +1,9 @@
 #include "outline/patches/patch_scene.h"
 
+#include "outline/patches/edge_curves.h"
 #include "outline/patches/refine_point.h"
+
+#include <algorithm>
 
 namespace bandvox {
 namespace {
@@ -8,6 +11,9 @@ namespace {
 // A surface in front has to be nearer by this part of the page's size, since the curve's own
 // surface is met there, too, twice where it folds.
 constexpr double kDepthMargin = 1e-7;
+
+// Faces of an edge may be in front of it by their gap, the more the steeper they are seen.
+constexpr double kSteepest = 30;
 
 class PatchReader final : public CurveReader {
   public:
@@ -19,11 +25,16 @@ class PatchReader final : public CurveReader {
         if (isIsophote && a.patch == b.patch && a.t == b.t) {
             return isophoteBetween(mLit, a, b, share);
         }
+        const bool isEdge = a.rule == CurveRule::Edge && b.rule == CurveRule::Edge;
+        if (isEdge && a.other == b.other) return edgeBetween(mLit, a, b, share);
         return pointBetween(mLit.seen, a, b, share);
     }
 
     int countBefore(const CurvePoint& point) override {
-        return mSheets.countBefore(point, kDepthMargin * mSize);
+        const double margin = kDepthMargin * mSize;
+        if (point.rule != CurveRule::Edge) return mSheets.countBefore(point, margin);
+        const EdgeFaces own = facesAt(mLit, point);
+        return mSheets.countBefore(point, margin, own.faces, std::max(margin, kSteepest * own.gap));
     }
 
     double foldAt(const CurvePoint& point, bool isOther) override {
@@ -54,7 +65,7 @@ class PatchReader final : public CurveReader {
 }  // namespace
 
 PatchScene::PatchScene(const LitPatches& lit, double size)
-    : mLit(lit), mSheets(lit.seen), mSize(size) {}
+    : mLit(lit), mSheets(lit.seen, lit.faces), mSize(size) {}
 
 std::unique_ptr<CurveReader> PatchScene::reader() const {
     return std::make_unique<PatchReader>(mLit, mSheets, mSize);

@@ -49,14 +49,16 @@ double extentOf(std::span<const BezierPatch> patches) {
 }  // namespace
 
 std::vector<SharedSide> matchSides(std::span<const BezierPatch> patches,
-                                   std::span<const ViewPatch> seen) {
+                                   std::span<const ViewPatch> seen, const FaceRegions* faces) {
     const double tolerance = 1e-6 * extentOf(patches);
     // Sides that match have their middles in the same cell, or in one beside it.
     std::map<std::array<long long, 3>, std::vector<std::size_t>> cells;
     std::vector<SharedSide> shared;
     for (std::size_t p = 0; p < patches.size(); ++p) {
+        const FacePlace place = placeOf(faces, static_cast<int>(p));
         for (int side = 0; side < 4; ++side) {
             if (seen[p].collapsed[static_cast<std::size_t>(side)]) continue;
+            if (place.face >= 0 && !place.inner[static_cast<std::size_t>(side)]) continue;
             const auto [u, v] = onSide(side, 0.5);
             const auto middle = evaluate(patches[p], u, v).position;
             std::array<long long, 3> cell{};
@@ -71,6 +73,7 @@ std::vector<SharedSide> matchSides(std::span<const BezierPatch> patches,
                 if (found == cells.end()) continue;
                 for (const std::size_t k : found->second) {
                     SharedSide& other = shared[k];
+                    if (placeOf(faces, other.a.patch).face != place.face) continue;
                     const BezierPatch& first = patches[static_cast<std::size_t>(other.a.patch)];
                     for (const bool reversed : {false, true}) {
                         if (!isNew || !isSameSide(first, other.a.side, patches[p], side, reversed,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "outline/patches/view_patch.h"
+#include "source/face_regions.h"
 
 #include <bandvox/source/bezier_patch.h>
 
@@ -23,8 +24,10 @@ struct SharedSide {
     bool isCrowded = false;      ///< more than two patches meet there
 };
 
-/// The sides of all patches that are no points, each once.
+/// The sides of all patches that are no points, each once; of faces only those within, since
+/// edges have the others.
 std::vector<SharedSide> matchSides(std::span<const BezierPatch> patches,
-                                   std::span<const ViewPatch> seen);
+                                   std::span<const ViewPatch> seen,
+                                   const FaceRegions* faces = nullptr);
 
 }  // namespace bandvox

@@ -153,7 +153,8 @@ struct Sheets::Sight {
     }
 };
 
-Sheets::Sheets(std::span<const ViewPatch> patches) : mPatches(patches) {
+Sheets::Sheets(std::span<const ViewPatch> patches, const FaceRegions* faces)
+    : mPatches(patches), mFaces(faces) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     double right = -kInfinity, bottom = -kInfinity;
     mLeft = mTop = kInfinity;
@@ -201,6 +202,13 @@ void Sheets::cutPart(Part part, int depth, std::vector<Part>& parts) const {
     // Large parts would be asked in vain too often.
     const bool isSmall = depth >= 2;
     if (depth == kDepthOfParts || (isSmall && part.oneToOne)) {
+        if (mFaces && mFaces->isTrimmed(part.patch)) {
+            const double u = part.u0, v = part.v0, size = part.size;
+            const ParameterBox box{{u - kBeside, v - kBeside},
+                                   {u + size + kBeside, v + size + kBeside}};
+            const bool isCut = mFaces->mayCut(part.patch, box);
+            if (!isCut && !mFaces->keeps(part.patch, u + 0.5 * size, v + 0.5 * size)) return;
+        }
         parts.push_back(std::move(part));
         return;
     }
@@ -260,6 +268,7 @@ void Sheets::meet(const Part& part, Sight& sight) const {
         return t >= from - kBeside && t <= from + part.size + kBeside;
     };
     if (!isIn(u, part.u0) || !isIn(v, part.v0) || !(p.z < sight.z)) return;
+    if (mFaces && !mFaces->keeps(part.patch, u, v)) return;
     sight.add({part.patch, std::clamp(u, 0.0, 1.0), std::clamp(v, 0.0, 1.0), p.z});
 }
 
@@ -273,6 +282,18 @@ int Sheets::countBefore(const CurvePoint& point, double margin) const {
     Sight sight{point.x, point.y, point.z - margin, sameDepth()};
     meetAll(sight);
     return static_cast<int>(sight.met.size());
+}
+
+int Sheets::countBefore(const CurvePoint& point, double margin, std::span<const int> ownFaces,
+                        double ownMargin) const {
+    Sight sight{point.x, point.y, point.z - margin, sameDepth()};
+    meetAll(sight);
+    return static_cast<int>(
+        std::count_if(sight.met.begin(), sight.met.end(), [&](const Place& place) {
+            const int face = placeOf(mFaces, place.patch).face;
+            const bool isOwn = std::find(ownFaces.begin(), ownFaces.end(), face) != ownFaces.end();
+            return !isOwn || place.z < point.z - ownMargin;
+        }));
 }
 
 std::optional<Sheets::Place> Sheets::firstAt(double x, double y) const {

@@ -3,6 +3,7 @@
 #include "outline/drawing/curve.h"
 #include "outline/patches/view_patch.h"
 #include "source/control_net.h"
+#include "source/face_regions.h"
 
 #include <cstddef>
 #include <optional>
@@ -17,12 +18,16 @@ namespace bandvox {
 /// followed. Many threads may ask at once.
 class Sheets {
   public:
-    /// The patches are kept by reference.
-    explicit Sheets(std::span<const ViewPatch> patches);
+    /// Both are kept by reference. Of patches that belong to faces only these are met.
+    explicit Sheets(std::span<const ViewPatch> patches, const FaceRegions* faces = nullptr);
 
     /// How many times the line of sight to a point of a curve meets patches that are nearer than it
     /// by more than `margin`. Where a patch folds within 1/131072 of its parameters it is not met.
     int countBefore(const CurvePoint& point, double margin) const;
+
+    /// The same, but patches of these faces have to be nearer by `ownMargin`.
+    int countBefore(const CurvePoint& point, double margin, std::span<const int> ownFaces,
+                    double ownMargin) const;
 
     /// A place of a patch, and its depth.
     struct Place {
@@ -63,6 +68,7 @@ class Sheets {
     static constexpr int kCells = 64;  // along a side of the page
 
     std::span<const ViewPatch> mPatches;
+    const FaceRegions* mFaces;
     std::vector<Part> mParts;
     double mLeft = 0, mTop = 0, mCellWidth = 1, mCellHeight = 1;
     std::vector<std::vector<std::uint32_t>> mCells;  // parts by the place that they may cover

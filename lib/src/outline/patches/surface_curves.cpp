@@ -3,8 +3,11 @@
 #include "outline/drawing/draw_curves.h"
 #include "outline/drawing/join_curves.h"
 #include "outline/patches/border_curves.h"
+#include "outline/patches/edge_curves.h"
+#include "outline/patches/face_cuts.h"
 #include "outline/patches/fold_curves.h"
 #include "outline/patches/meeting_curves.h"
+#include "outline/patches/refine_point.h"
 
 #include <bandvox/core/parallel.h>
 
@@ -29,24 +32,27 @@ class SurfaceCurves {
 
     std::vector<Curve> make() {
         std::vector<Curve> folds = ofEachPatch([&](int k) {
-            return foldCurves(mLit.seen[static_cast<std::size_t>(k)], k, mSampling);
+            return cut(foldCurves(mLit.seen[static_cast<std::size_t>(k)], k, mSampling));
         });
-        const auto& [patches, seen, light] = mLit;
-        const std::vector<SharedSide> sides = matchSides(patches, seen);
-        BorderCurves borders =
-            borderCurves(patches, seen, sides, folds, cosineOf(mOptions.creaseAngle), mSampling);
+        const std::vector<SharedSide> sides = matchSides(mLit.patches, mLit.seen, mLit.faces);
+        BorderCurves borders = bordersOf(sides, folds, mOptions.creaseAngle);
         std::vector<Curve> seams;
         if (mOptions.fill == OutlineFillKind::Toon) seams = seamsOf(sides, folds);
         append(folds, borders.contours);
         std::vector<Curve> meetings;
         if (mOptions.intersections || mOptions.fill != OutlineFillKind::None) {
-            meetings = meetingCurves(seen, sides, mSampling, mProgress);
+            meetings = cut(meetingCurves(mLit.seen, sides, mLit.faces, mSampling, mProgress));
         }
         for (auto* kind : {&folds, &borders.boundaries, &borders.creases, &meetings, &seams}) {
             join(std::move(*kind));
         }
         for (const double cosine : allIsophotes(mOptions)) {
-            join(ofEachPatch([&](int k) { return isophoteCurves(mLit, k, cosine, mSampling); }));
+            const PointBetween between = [&](const CurvePoint& a, const CurvePoint& b, double s) {
+                return isophoteBetween(mLit, a, b, s);
+            };
+            join(ofEachPatch([&](int k) {
+                return cutToFaces(isophoteCurves(mLit, k, cosine, mSampling), mLit.faces, between);
+            }));
         }
         return std::move(mCurves);
     }
@@ -57,11 +63,32 @@ class SurfaceCurves {
                                const std::vector<Curve>& folds) const {
         constexpr double kLeastDegrees = 0.01;
         if (mOptions.creaseAngle <= kLeastDegrees) return {};
-        std::vector<Curve> seams =
-            borderCurves(mLit.patches, mLit.seen, sides, folds, cosineOf(kLeastDegrees), mSampling)
-                .creases;
+        std::vector<Curve> seams = bordersOf(sides, folds, kLeastDegrees).creases;
         for (Curve& curve : seams) curve.isDrawn = false;
         return seams;
+    }
+
+    // The sides of patches, as far as they belong to faces, and the edges of these.
+    BorderCurves bordersOf(const std::vector<SharedSide>& sides, const std::vector<Curve>& folds,
+                           double creaseAngle) const {
+        const double crease = cosineOf(creaseAngle);
+        BorderCurves borders =
+            borderCurves(mLit.patches, mLit.seen, sides, folds, crease, mSampling);
+        if (!mLit.faces) return borders;
+        BorderCurves edges = edgeCurves(mLit, folds, crease, mSampling);
+        for (auto kind :
+             {&BorderCurves::boundaries, &BorderCurves::creases, &BorderCurves::contours}) {
+            borders.*kind = cut(std::move(borders.*kind));
+            append(borders.*kind, edges.*kind);
+        }
+        return borders;
+    }
+
+    std::vector<Curve> cut(std::vector<Curve> curves) const {
+        return cutToFaces(std::move(curves), mLit.faces,
+                          [&](const CurvePoint& a, const CurvePoint& b, double share) {
+                              return pointBetween(mLit.seen, a, b, share);
+                          });
     }
 
     template <class CurvesOf>

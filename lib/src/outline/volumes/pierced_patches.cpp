@@ -1,6 +1,7 @@
 #include "outline/volumes/pierced_patches.h"
 
 #include "outline/drawing/join_curves.h"
+#include "outline/patches/face_cuts.h"
 #include "outline/patches/onto_zero.h"
 #include "source/control_net.h"
 
@@ -304,8 +305,16 @@ std::vector<Curve> piercingCurves(const LitPatches& lit, const VolumeSurface& su
     std::vector<std::vector<Curve>> perPatch(lit.patches.size());
     parallelFor(static_cast<std::int64_t>(perPatch.size()), [&](std::int64_t i) {
         progress.throwIfInterrupted();
-        perPatch[static_cast<std::size_t>(i)] =
+        std::vector<Curve> found =
             PatchPiercing(lit, static_cast<int>(i), surface, sampling).follow();
+        if (lit.faces && lit.faces->isTrimmed(static_cast<int>(i))) {
+            PiercingFinder finder(lit, surface);
+            const PointBetween between = [&](const CurvePoint& a, const CurvePoint& b, double s) {
+                return finder.between(a, b, s);
+            };
+            found = cutToFaces(std::move(found), lit.faces, between);
+        }
+        perPatch[static_cast<std::size_t>(i)] = std::move(found);
     });
     std::vector<Curve> curves;
     for (auto& some : perPatch) std::move(some.begin(), some.end(), std::back_inserter(curves));

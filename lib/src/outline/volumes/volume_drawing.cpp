@@ -140,7 +140,9 @@ VolumeDrawing::VolumeDrawing(const std::vector<OutlineVolume>& volumes, const Pa
     const CurveSampling sampling = samplingFor(options);
     const ViewMatrix view = pageView(content, options, kTurnOfVolumes);
     mPatches = seenBy(view, patches.patches, sampling.size);
-    mLit = {patches.patches, mPatches, lightDirection(content, options)};
+    mFaces = FaceRegions(patches.topology);
+    mLit = {patches.patches, mPatches, lightDirection(content, options),
+            patches.topology.faces.empty() ? nullptr : &mFaces};
     mCurves = surfaceCurves(mLit, options, sampling, progress);
     for (const auto& object : mObjects) {
         mSurfaces.push_back(surfaceOf(*object, view, static_cast<int>(mSurfaces.size())));

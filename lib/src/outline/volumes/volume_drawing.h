@@ -27,6 +27,7 @@ class VolumeDrawing {
   private:
     std::vector<std::unique_ptr<SurfaceObject>> mObjects;
     std::vector<ViewPatch> mPatches;
+    FaceRegions mFaces;
     LitPatches mLit;
     std::vector<VolumeSurface> mSurfaces;
     std::vector<Curve> mCurves;

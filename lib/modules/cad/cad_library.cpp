@@ -1,0 +1,127 @@
+// STEP, IGES and BREP by Open CASCADE: a module beside the library, or a part of it where that is
+// static.
+#include "source/cad_library.h"
+
+#include "core/letter_case.h"
+#include "face_reader.h"
+
+#include <bandvox/core/error.h>
+
+#include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <Bnd_Box.hxx>
+#include <IFSelect_ReturnStatus.hxx>
+#include <IGESControl_Reader.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_Printer.hxx>
+#include <STEPControl_Reader.hxx>
+#include <Standard_Failure.hxx>
+#include <StepRepr_RepresentationItem.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TopExp_Explorer.hxx>
+#include <Transfer_TransientProcess.hxx>
+#include <XSControl_TransferReader.hxx>
+#include <XSControl_WorkSession.hxx>
+#include <cmath>
+#include <mutex>
+#include <string>
+
+namespace bandvox {
+namespace {
+
+// Faces that share no edges may have them in the same places.
+constexpr double kSewing = 1e-5;  // of the shape's size
+
+TopoDS_Shape sewn(const TopoDS_Shape& shape) {
+    const TopExp_Explorer loose(shape, TopAbs_FACE, TopAbs_SHELL);
+    if (!loose.More()) return shape;
+    Bnd_Box box;
+    BRepBndLib::AddOptimal(shape, box, false, false);
+    if (box.IsVoid()) return shape;
+    BRepBuilderAPI_Sewing sewing(kSewing * std::sqrt(box.SquareExtent()));
+    sewing.Add(shape);
+    sewing.Perform();
+    const TopoDS_Shape& result = sewing.SewedShape();
+    return result.IsNull() ? shape : result;
+}
+
+void requireDone(IFSelect_ReturnStatus status, const char* kind) {
+    if (status == IFSelect_RetDone) return;
+    throw Error(ErrorKind::Input, std::string("is malformed; expected a whole ") + kind + " file");
+}
+
+class OpenCascade final : public CadLibrary {
+  public:
+    OpenCascade() {
+        // The standard output is for results.
+        Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
+    }
+
+    CadShape read(const std::filesystem::path& path, const InterruptCheck& check) const override {
+        // Its readers have tables in common.
+        static std::mutex mutex;
+        const std::scoped_lock lock(mutex);
+        try {
+            const std::string extension = lowerExtension(path);
+            if (extension == ".brep") return readBrep(path, check);
+            if (extension == ".iges" || extension == ".igs") return readIges(path, check);
+            return readStep(path, check);
+        } catch (const Standard_Failure& failure) {
+            const char* text = failure.GetMessageString();
+            throw Error(ErrorKind::Input,
+                        std::string("cannot be read: Open CASCADE says ") +
+                            (text && *text ? text : failure.DynamicType()->Name()) +
+                            "; expected a sound part");
+        }
+    }
+
+  private:
+    static CadShape readBrep(const std::filesystem::path& path, const InterruptCheck& check) {
+        TopoDS_Shape shape;
+        const BRep_Builder builder;
+        if (!BRepTools::Read(shape, path.c_str(), builder) || shape.IsNull()) {
+            throw Error(ErrorKind::Input, "is malformed; expected a whole BREP file");
+        }
+        return facesOf(
+            sewn(shape), [](const TopoDS_Shape&) { return std::string(); }, check);
+    }
+
+    static CadShape readIges(const std::filesystem::path& path, const InterruptCheck& check) {
+        IGESControl_Reader reader;
+        requireDone(reader.ReadFile(path.c_str()), "IGES");
+        reader.TransferRoots();
+        const TopoDS_Shape shape = reader.OneShape();
+        if (shape.IsNull()) return {};
+        return facesOf(
+            sewn(shape), [](const TopoDS_Shape&) { return std::string(); }, check);
+    }
+
+    static CadShape readStep(const std::filesystem::path& path, const InterruptCheck& check) {
+        STEPControl_Reader reader;
+        requireDone(reader.ReadFile(path.c_str()), "STEP");
+        reader.TransferRoots();
+        const TopoDS_Shape shape = reader.OneShape();
+        if (shape.IsNull()) return {};
+        const auto nameOf = [&](const TopoDS_Shape& part) {
+            const auto item = Handle(StepRepr_RepresentationItem)::DownCast(
+                reader.WS()->TransferReader()->EntityFromShapeResult(part, 1));
+            if (item.IsNull() || item->Name().IsNull()) return std::string();
+            return std::string(item->Name()->ToCString());
+        };
+        return facesOf(sewn(shape), nameOf, check);
+    }
+};
+
+}  // namespace
+
+extern "C" const CadLibrary* bandvoxCadLibrary();
+
+extern "C" const CadLibrary* bandvoxCadLibrary() {
+    static const OpenCascade library;
+    return &library;
+}
+
+}  // namespace bandvox
