@@ -114,7 +114,7 @@ std::vector<TrimmedPoint> wholeRule(const CellFrame& frame) {
 
 }  // namespace
 
-PieceCell::CellTrim(const PatchTrim& trim, const Patch& patch, const ParameterCell& cell)
+PieceCell::PieceCell(const PatchTrim& trim, const Patch& patch, const ParameterCell& cell)
     : mTrim(trim), mPatch(patch), mCell(cell), mAround(trim.mPieces[trim.mOwn].isCavity ? -1 : 0) {
     openvdb::BBoxd box = patch.bounds(cell);
     box.expand(trim.mDistance);
