@@ -116,7 +116,7 @@ inline Findings checkPiece(const DrawnView& drawn, const VisiblePiece& piece,
 
 /// Compares ten or more samples of each piece with exact lines of sight; what is within 0.2 pixels
 /// of a piece's ends or of a corner is left out. `wrong`: seen or not; `miscounted`: how many are
-/// in front. in front.
+/// in front.
 inline Findings checkVisibility(const DrawnView& drawn) {
     const ExactSheets oracle(drawn.seen);
     std::vector<Findings> found(drawn.pieces.size());
