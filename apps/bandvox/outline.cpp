@@ -76,7 +76,8 @@ const CommandTable& outlineTable() {
                 {"page", 0, "SIZE",
                  formatNumber(options.width) + "x" + formatNumber(options.height),
                  "WxH in millimetres, or A3, A4, A5, letter, upright, or with -landscape.", page},
-                {"margin", 0, "MM", formatNumber(options.margin),
+                {"margin", 0, "MM",
+                 "a twentieth of the shorter side, at most " + formatNumber(options.margin),
                  "What stays free around the drawing.", page},
                 {"tolerance", 0, "MM", formatNumber(options.tolerance),
                  "How far lines may be from the true ones.", lines},
@@ -173,9 +174,11 @@ void readPage(const CommandLine& line, OutlineOptions& options) {
             const auto height = std::from_chars(width.ptr + 1, end, size[1]);
             isSize = height.ec == std::errc() && height.ptr == end;
         }
-        if (!isSize || !kSomeLength.contains(size[0]) || !kSomeLength.contains(size[1])) {
+        constexpr Range kSide{.low = 1, .high = 1e5};
+        if (!isSize || !kSide.contains(size[0]) || !kSide.contains(size[1])) {
             line.fail("page",
-                      "WxH in mm, A3, A4, A5 or letter, the last four also with -landscape");
+                      "WxH in mm, each 1 or more, A3, A4, A5 or letter, the last four also with "
+                      "-landscape");
         }
     }
     options.width = size[0];

@@ -30,6 +30,11 @@ const std::string kCylinder =
     "v 1 0 0\nv 1 1 0 0.7071067811865476\nv 0 1 0\nv 1 0 2\nv 1 1 2 0.7071067811865476\nv 0 1 2\n"
     "cstype rat bezier\ndeg 2 1\nsurf 0 1 0 1 1 2 3 4 5 6\nparm u 0 1\nparm v 0 1\nend\n";
 
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    return text.replace(at, from.size(), to);
+}
+
 std::size_t occurrences(const std::string& text, const std::string& word) {
     std::size_t count = 0;
     for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
@@ -90,6 +95,9 @@ TEST(Outline, HasPagesAndKinds) {
                                {"--margin", "75"},
                                {"--light", "0,0,0"},
                                {"--frame", "3"},
+                               {"--page", "0.5x10"},
+                               {"--stroke", "0.00001"},
+                               {"--dash", "0.00001 0.00001"},
                                {"--eye", "0.1,0,1"}}) {
         EXPECT_EQ(outline(wrong).status, 2) << wrong[1];
     }
@@ -360,10 +368,6 @@ TEST(Outline, RefusesOptionsOfVolumesThatHaveNoUse) {
 }
 
 TEST(Outline, RefusesBrokenFiles) {
-    const auto replaced = [](std::string text, const std::string& from, const std::string& to) {
-        const std::size_t at = text.find(from);
-        return text.replace(at, from.size(), to);
-    };
     struct Broken {
         std::string name, text, words;
         int status = 3;
@@ -416,6 +420,30 @@ TEST(Outline, RefusesBrokenFiles) {
         EXPECT_EQ(folder.contents(), Names{broken.name});
     }
     EXPECT_EQ(runBandvox({"outline", "/nowhere.bpt", "-o", "/tmp/out.svg"}).status, 3);
+}
+
+TEST(Outline, IsXmlWhateverTheNamesOfObjects) {
+    const TemporaryFolder folder;
+    // Latin-1, a character that XML does not have, and one that it has.
+    const std::string names = "o caf\xe9-\xef\xbf\xbe-\xc3\xa9<\n";
+    writeText(folder / "cylinder.obj", replaced(kCylinder, "cstype", names + "cstype"));
+    const RunResult result =
+        runBandvox({"outline", "cylinder.obj", "-o", "out.svg"}, {.folder = folder.path()});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(readText(folder / "out.svg").find("\"caf_-___-\xc3\xa9&lt;\""), std::string::npos);
+}
+
+TEST(Outline, SeesAllOfWhatControlPointsReachFarBeyond) {
+    const TemporaryFolder folder;
+    // A control point of small weight is far before the surface.
+    writeText(
+        folder / "half.obj",
+        "v 1 0 0\nv 0 0 0 0.1\nv -1 0 0\nv 1 0 1\nv 0 40 1 0.1\nv -1 0 1\n"
+        "cstype rat bezier\ndeg 2 1\nsurf 0 1 0 1 1 2 3 4 5 6\nparm u 0 1\nparm v 0 1\nend\n");
+    const RunResult result =
+        runBandvox({"outline", "half.obj", "-o", "out.svg", "--from", "0,1,0.1", "--up", "0,0,1"},
+                   {.folder = folder.path()});
+    EXPECT_EQ(result.status, 0) << result.err;
 }
 
 TEST(Outline, OfALineThatIsSeenAlongItselfIsEmpty) {

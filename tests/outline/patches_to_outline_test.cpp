@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 namespace bandvox::outline_test {
 namespace {
@@ -224,6 +225,39 @@ TEST(PatchesToOutline, DrawsTheFootOfWhatStandsOnAPlaneOnce) {
         }
         EXPECT_NEAR(length, std::numbers::pi, 0.02) << tolerance;
         EXPECT_LT(outline.paths.size(), 20U) << tolerance;
+    }
+}
+
+TEST(PatchesToOutline, FindsWhereLargePatchesCross) {
+    std::mt19937 random(5);
+    const auto number = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    for (int k = 0; k < 40; ++k) {
+        // A rectangle through the plane z = 0 along x = a, from y = -h to h.
+        const double a = number(-0.9, 0.9), h = number(0.3, 0.9), turn = number(0.3, 1.5);
+        BezierPatch wall{.degreeU = 1, .degreeV = 1};
+        for (const double z : {-number(0.1, 1.5), number(0.1, 1.5)}) {
+            for (const double y : {-h, h}) {
+                wall.control.push_back({a + std::cos(turn) * z, y, std::sin(turn) * z, 1});
+            }
+        }
+        const openvdb::Vec3d from(number(-1, 1), number(-1, 1), number(0.2, 1));
+        const OutlineOptions options = parallelView(from, 2.6);
+        const Outline outline =
+            patchesToOutline({{square(1, 0), wall}, {"floor", "wall"}, {}}, options);
+        const Camera camera(options.camera, 100, 100,
+                            openvdb::BBoxd(openvdb::Vec3d(-1.0), openvdb::Vec3d(1.0)));
+        double length = 0;
+        for (const OutlinePath& path : outline.paths) {
+            if (path.kind != OutlineKind::Intersection) continue;
+            const auto &first = path.points.front(), &last = path.points.back();
+            length += std::hypot(last[0] - first[0], last[1] - first[1]);
+        }
+        const openvdb::Vec3d y(0, 1, 0);
+        const double expected =
+            2 * h * std::hypot(y.dot(camera.right()), y.dot(camera.upward())) * 200 / 2.6;
+        EXPECT_NEAR(length, expected, 0.02) << k;
     }
 }
 

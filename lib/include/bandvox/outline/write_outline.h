@@ -10,7 +10,7 @@ namespace bandvox {
 
 /// How lines and fills look in a file.
 struct StrokeOptions {
-    double width = 0.35;            ///< of visible lines, page units; > 0
+    double width = 0.35;            ///< of visible lines, page units; 0.0001 or more
     double hiddenWidth = 0.18;      ///< of hidden ones
     std::string color = "#000000";  ///< as CSS has it
     std::string hiddenColor = "#808080";

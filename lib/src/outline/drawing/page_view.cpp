@@ -87,8 +87,20 @@ Camera pageCamera(const PageContent& content, const OutlineOptions& options) {
     const double wide = options.width - 2 * options.margin;
     const double high = options.height - 2 * options.margin;
     const double pixels = 20000 / std::max(wide, high);
-    return {options.camera, static_cast<int>(std::ceil(pixels * wide)),
-            static_cast<int>(std::ceil(pixels * high)), content.framed};
+    const auto cameraOf = [&](const std::vector<openvdb::Vec3d>& framed) {
+        return Camera(options.camera, static_cast<int>(std::ceil(pixels * wide)),
+                      static_cast<int>(std::ceil(pixels * high)), framed);
+    };
+    const Camera camera = cameraOf(content.framed);
+    if (options.camera.eye) return camera;
+    // What encloses the surfaces may be much larger than they are: then the eye goes farther away.
+    std::vector<openvdb::Vec3d> all = content.framed;
+    bool isBefore = true;
+    for (const auto& p : content.enclosing) {
+        all.push_back(openvdb::Vec3d(p[0], p[1], p[2]) / p[3]);
+        isBefore = isBefore && camera.depth(all.back()) > 0;
+    }
+    return isBefore ? camera : cameraOf(all);
 }
 
 std::array<double, 3> lightDirection(const PageContent& content, const OutlineOptions& options) {

@@ -14,6 +14,11 @@
 #include <utility>
 
 namespace bandvox {
+namespace {
+
+constexpr double kLeastLength = 1e-4;  // what plainNumber does not round to 0
+
+}  // namespace
 
 std::string PaintLayer::kindName() const {
     constexpr std::array kNames{"contour",      "boundary", "crease",
@@ -23,9 +28,9 @@ std::string PaintLayer::kindName() const {
 
 void requireValid(const StrokeOptions& options) {
     for (const double width : {options.width, options.hiddenWidth}) {
-        if (width > 0 && std::isfinite(width)) continue;
-        throw Error(ErrorKind::Usage,
-                    "a line's width is " + std::to_string(width) + "; expected one above 0");
+        if (width >= kLeastLength && std::isfinite(width)) continue;
+        throw Error(ErrorKind::Usage, "a line's width is " + std::to_string(width) +
+                                          "; expected one of 0.0001 or more");
     }
     parsedDash(options.dash);
     if (!(options.shade >= 0 && options.shade <= 1)) {
@@ -140,7 +145,8 @@ std::vector<double> parsedDash(const std::string& dash) {
         at = read.ptr;
         lengths.push_back(length);
     }
-    const bool isSome = std::any_of(lengths.begin(), lengths.end(), [](double l) { return l > 0; });
+    const bool isSome =
+        std::any_of(lengths.begin(), lengths.end(), [](double l) { return l >= kLeastLength; });
     if (isDash && isSome) return lengths;
     throw Error(ErrorKind::Usage, "the dash is \"" + dash + "\"; expected lengths as \"1.2 0.8\"");
 }

@@ -1,23 +1,53 @@
 #include "outline/files/paint_layers.h"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
 
 namespace bandvox {
 namespace {
 
+// The length of the character that a text in UTF-8 begins with; 0 if it is none that XML may have.
+std::size_t characterLength(std::string_view text) {
+    const auto byte = [&](std::size_t i) -> std::uint32_t {
+        return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
+    };
+    const std::uint32_t first = byte(0);
+    if (first < 0x80) return first < 0x20 || first == 0x7F ? 0 : 1;
+    const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+    if (first < 0xC2 || first > 0xF4) return 0;
+    std::uint32_t code = first & (0xFFU >> (length + 1));
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xC0U) != 0x80) return 0;
+        code = code << 6U | (byte(i) & 0x3FU);
+    }
+    constexpr std::array<std::uint32_t, 5> kFirstOf{0, 0, 0x80, 0x800, 0x10000};
+    const bool isSurrogate = code >= 0xD800 && code < 0xE000;
+    const bool isCharacter = code >= kFirstOf[length] && code <= 0x10FFFF && !isSurrogate &&
+                             code != 0xFFFE && code != 0xFFFF;
+    return isCharacter ? length : 0;
+}
+
 std::string escaped(const std::string& text) {
     std::string result;
-    for (const char c : text) {
-        const auto code = static_cast<unsigned char>(c);
-        if (c == '&') {
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t length = characterLength(std::string_view(text).substr(i));
+        const char c = text[i];
+        if (length != 1) {
+            result += length == 0 ? "_" : text.substr(i, length);
+        } else if (c == '&') {
             result += "&amp;";
         } else if (c == '<') {
             result += "&lt;";
         } else if (c == '"') {
             result += "&quot;";
         } else {
-            result += code < 0x20 ? '_' : c;
+            result += c;
         }
+        i += std::max<std::size_t>(length, 1);
     }
     return result;
 }

@@ -143,8 +143,6 @@ bool MeetingMarch::converge(MeetingPlace& p, std::optional<Row> row,
         const double behind = row ? dot4(*row, lengths(p, base)) : 0;
         if (!solve4({j[0], j[1], j[2], across}, {gap[0], gap[1], gap[2], behind}, d)) return false;
         moved = std::sqrt(dot4(d, d));
-        // What is far from where it began is not what was asked for.
-        if (moved > 0.2 * mSize) return false;
         for (std::size_t k = 0; k < 4; ++k) p[k] += d[k] / mWeights[k];
         for (const double x : p) {
             if (x < -0.5 || x > 1.5) return false;

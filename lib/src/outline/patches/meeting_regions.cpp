@@ -82,7 +82,7 @@ class RegionSearch {
         const auto partsB = divideB ? shared(*b) : std::array<CellPointer, 4>{b};
         for (const CellPointer& p : partsA) {
             for (const CellPointer& q : partsB) {
-                if (p && q) mPairs.emplace_back(p, q);
+                if (p && q) mPairs.emplace_back(p, q);  // what is not divided is the first alone
             }
         }
     }
