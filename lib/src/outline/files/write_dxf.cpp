@@ -53,7 +53,7 @@ class DxfText {
     std::string table(std::string_view type, int count, std::string_view known = {}) {
         put(0, "TABLE");
         put(2, type);
-        const std::string handle = known.empty() ? nextHandle() : std::string(known);
+        std::string handle = known.empty() ? nextHandle() : std::string(known);
         put(5, handle);
         put(330, "0");
         put(100, "AcDbSymbolTable");
@@ -70,7 +70,7 @@ class DxfText {
 
     std::string nextHandle() {
         std::array<char, 16> digits{};
-        const auto end =
+        char* const end =
             std::to_chars(digits.data(), digits.data() + digits.size(), mHandle++, 16).ptr;
         std::string handle(digits.data(), end);
         std::transform(handle.begin(), handle.end(), handle.begin(),
