@@ -178,7 +178,17 @@ TEST(ReadCadPatches, RefusesWhatIsNoWholeFile) {
     const auto all = [](const std::string& text) {
         return [text](const std::string&) { return text; };
     };
+    const auto changed = [](const std::string& from, const std::string& to) {
+        return [from, to](const std::string& text) {
+            const std::size_t at = text.find(from);
+            return std::string(text).replace(at, from.size(), to);
+        };
+    };
     const std::vector<Broken> broken{
+        {".step", changed("VECTOR('',#", "VECTOR('',#99999")},
+        {".step", changed("CARTESIAN_POINT('',(0.,", "CARTESIAN_POINT('',(NAN,")},
+        {".brep", changed("Curve2ds ", "Curve2ds 10000000")},
+        {".brep", changed("\n1 0 0 ", "\n1 nan 0 ")},
         {".step", first(0)},
         {".step", first(0.5)},
         {".step", all("solid\nendsolid\n")},

@@ -14,6 +14,7 @@
 #include <Bnd_Box.hxx>
 #include <IFSelect_ReturnStatus.hxx>
 #include <IGESControl_Reader.hxx>
+#include <Interface_InterfaceModel.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
@@ -89,14 +90,27 @@ class OpenCascade final : public CadLibrary {
             sewn(shape), [](const TopoDS_Shape&) { return std::string(); }, check);
     }
 
+    // What a reader does not know it leaves out.
+    static void warnOfUnknown(const XSControl_Reader& reader, CadShape& shape) {
+        const Handle(Interface_InterfaceModel) model = reader.WS()->Model();
+        int unknown = 0;
+        for (int k = 1; k <= model->NbEntities(); ++k) unknown += model->IsUnknownEntity(k) ? 1 : 0;
+        if (unknown == 0) return;
+        shape.warnings.push_back(std::to_string(unknown) +
+                                 " entities of types that Open CASCADE does not know were left "
+                                 "out; faces may be missing");
+    }
+
     static CadShape readIges(const std::filesystem::path& path, const InterruptCheck& check) {
         IGESControl_Reader reader;
         requireDone(reader.ReadFile(path.c_str()), "IGES");
         reader.TransferRoots();
         const TopoDS_Shape shape = reader.OneShape();
         if (shape.IsNull()) return {};
-        return facesOf(
+        CadShape result = facesOf(
             sewn(shape), [](const TopoDS_Shape&) { return std::string(); }, check);
+        warnOfUnknown(reader, result);
+        return result;
     }
 
     static CadShape readStep(const std::filesystem::path& path, const InterruptCheck& check) {
@@ -111,7 +125,9 @@ class OpenCascade final : public CadLibrary {
             if (item.IsNull() || item->Name().IsNull()) return std::string();
             return std::string(item->Name()->ToCString());
         };
-        return facesOf(sewn(shape), nameOf, check);
+        CadShape result = facesOf(sewn(shape), nameOf, check);
+        warnOfUnknown(reader, result);
+        return result;
     }
 };
 

@@ -1,0 +1,140 @@
+#include "source/cad_integrity.h"
+
+#include "core/letter_case.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace bandvox {
+namespace {
+
+bool isNoNumber(std::string_view word) {
+    if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
+    const std::string lower = inLowerCase(std::string(word.substr(0, 16)));
+    return lower == "nan" || lower == "inf" || lower == "infinity";
+}
+
+[[noreturn]] void failAtWord(const FileContents& file, std::string_view word) {
+    file.fail("holds \"" + std::string(word) + "\"; expected finite numbers");
+}
+
+bool isLetter(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+// Goes through the text outside of strings and comments. Open CASCADE follows names that are not
+// defined to nowhere.
+void requireSoundStep(const FileContents& file) {
+    const std::string_view text(file.bytes);
+    if (text.substr(0, 4096).find("ISO-10303-21") == std::string_view::npos) {
+        file.fail("does not begin with ISO-10303-21; expected a STEP file");
+    }
+    if (text.rfind("END-ISO-10303-21") == std::string_view::npos) {
+        file.fail("ends before END-ISO-10303-21; expected the rest of a STEP file");
+    }
+    std::vector<std::uint64_t> defined, used;
+    for (std::size_t i = 0; i < text.size();) {
+        const char c = text[i];
+        if (c == '\'') {
+            i = std::min(text.find('\'', i + 1), text.size() - 1) + 1;
+        } else if (text.compare(i, 2, "/*") == 0) {
+            i = std::min(text.find("*/", i + 2), text.size() - 2) + 2;
+        } else if (c == '#') {
+            std::uint64_t name = 0;
+            const char* const end = text.data() + text.size();
+            const char* const after = std::from_chars(text.data() + i + 1, end, name).ptr;
+            i = static_cast<std::size_t>(after - text.data());
+            const std::size_t next = text.find_first_not_of(" \t\r\n", i);
+            const bool isDefined = next != std::string_view::npos && text[next] == '=';
+            (isDefined ? defined : used).push_back(name);
+        } else if (isLetter(c)) {
+            const std::size_t begin = i;
+            while (i < text.size() && isLetter(text[i])) ++i;
+            const std::string_view word = text.substr(begin, i - begin);
+            if (isNoNumber(word)) failAtWord(file, word);
+        } else {
+            ++i;
+        }
+    }
+    std::sort(defined.begin(), defined.end());
+    for (const std::uint64_t name : used) {
+        if (std::binary_search(defined.begin(), defined.end(), name)) continue;
+        file.fail("refers to #" + std::to_string(name) +
+                  ", which it does not define; expected a whole STEP file");
+    }
+}
+
+// Open CASCADE believes what lists are said to hold, and may never come to an end of what is not
+// there.
+void requireSoundBrep(const FileContents& file) {
+    const std::string_view text(file.bytes);
+    if (text.substr(0, 4096).find("CASCADE Topology V") == std::string_view::npos) {
+        file.fail("does not begin with CASCADE Topology; expected a BREP file as text");
+    }
+    constexpr std::string_view kBlanks = " \t\r\n";
+    const auto isList = [](std::string_view word) {
+        return word == "Locations" || word == "Curve2ds" || word == "Curves" ||
+               word == "Polygon3D" || word == "PolygonOnTriangulations" || word == "Surfaces" ||
+               word == "Triangulations" || word == "TShapes";
+    };
+    std::string_view before, last[2];
+    std::size_t words = 0;  // after the last star
+    for (std::size_t i = text.find_first_not_of(kBlanks); i < text.size();) {
+        const std::size_t end = std::min(text.find_first_of(kBlanks, i), text.size());
+        const std::string_view word = text.substr(i, end - i);
+        if (isNoNumber(word)) failAtWord(file, word);
+        if (isList(before)) {
+            std::int64_t count = 0;
+            std::from_chars(word.data(), word.data() + word.size(), count);
+            if (count < 0 || count > static_cast<std::int64_t>(text.size())) {
+                file.fail("announces " + std::string(word) + " " + std::string(before) +
+                          "; expected no more than a file of this size can hold");
+            }
+        }
+        if (word == "*") {
+            words = 0;
+        } else {
+            if (words < 2) last[words] = word;
+            ++words;
+        }
+        before = word;
+        i = text.find_first_not_of(kBlanks, end);
+    }
+    // Each shape ends with a star; after the last one comes which of them is the whole.
+    const bool isShape =
+        words > 1 && last[0].size() > 1 && (last[0][0] == '+' || last[0][0] == '-');
+    if (!isShape) {
+        file.fail("ends before the shape that it is about; expected the rest of a BREP file");
+    }
+}
+
+void requireWholeIges(const FileContents& file) {
+    const std::string& bytes = file.bytes;
+    // Column 73 has the section's letter: Start, or Compressed or Binary, which are rare.
+    constexpr std::size_t kLetter = 72;
+    if (bytes.size() <= kLetter || bytes[kLetter] != 'S') {
+        file.fail("has no S in column 73 of its first line; expected an IGES file as text");
+    }
+    const auto end = bytes.find_last_not_of(" \t\r\n");
+    const auto line = bytes.rfind('\n', end) + 1;
+    if (end < line + kLetter || bytes[line + kLetter] != 'T') {
+        file.fail("ends before the line with T in column 73; expected the rest of an IGES file");
+    }
+}
+
+}  // namespace
+
+void requireSoundCadFile(const FileContents& file) {
+    const std::string extension = lowerExtension(file.path);
+    if (file.bytes.empty()) file.fail("is empty; expected a part");
+    if (extension == ".step" || extension == ".stp") return requireSoundStep(file);
+    if (extension == ".brep") return requireSoundBrep(file);
+    requireWholeIges(file);
+}
+
+}  // namespace bandvox
