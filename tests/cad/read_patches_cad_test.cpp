@@ -215,6 +215,18 @@ TEST(ReadCadPatches, RefusesWhatIsNoWholeFile) {
     EXPECT_EQ(kindOf([&] { readPatches(folder / "none.step"); }, message), ErrorKind::Input);
 }
 
+TEST(ReadCadPatches, WarnsOfWhatIsNotKnown) {
+    const PartFolder folder;
+    const auto path = folder.write(cylinder(1, 2), ".step");
+    std::string text = textOf(path);
+    const std::string face = "ADVANCED_FACE";
+    text.replace(text.find(face), face.size(), "FOO_FACE");
+    writeText(path, text);
+    const PatchModel model = readPatches(path);
+    ASSERT_EQ(model.warnings.size(), 1U);
+    EXPECT_NE(model.warnings[0].find("does not know were left out: 1"), std::string::npos);
+}
+
 TEST(ReadCadPatches, RefusesToFillWhatIsOpen) {
     const PartFolder folder;
     const TopoDS_Shape shape = cylinder(1, 2);

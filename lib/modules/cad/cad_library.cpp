@@ -15,6 +15,7 @@
 #include <IFSelect_ReturnStatus.hxx>
 #include <IGESControl_Reader.hxx>
 #include <Interface_InterfaceModel.hxx>
+#include <Interface_Protocol.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
@@ -94,11 +95,13 @@ class OpenCascade final : public CadLibrary {
     static void warnOfUnknown(const XSControl_Reader& reader, CadShape& shape) {
         const Handle(Interface_InterfaceModel) model = reader.WS()->Model();
         int unknown = 0;
-        for (int k = 1; k <= model->NbEntities(); ++k) unknown += model->IsUnknownEntity(k) ? 1 : 0;
+        for (int k = 1; k <= model->NbEntities(); ++k) {
+            unknown += model->Protocol()->IsUnknownEntity(model->Value(k)) ? 1 : 0;
+        }
         if (unknown == 0) return;
-        shape.warnings.push_back(std::to_string(unknown) +
-                                 " entities of types that Open CASCADE does not know were left "
-                                 "out; faces may be missing");
+        shape.warnings.push_back(
+            "entities of types that Open CASCADE does not know were left out: " +
+            std::to_string(unknown) + "; faces may be missing");
     }
 
     static CadShape readIges(const std::filesystem::path& path, const InterruptCheck& check) {
