@@ -191,6 +191,13 @@ TEST(Outline, WritesTheCurvesOfAnSvgAsSplinesOfADxf) {
     EXPECT_EQ(splines.count("teapot 1 visible contour"), 1U);
     std::sort(handles.begin(), handles.end());
     EXPECT_EQ(std::adjacent_find(handles.begin(), handles.end()), handles.end());
+    // Of an odd number of dashes there are two turns.
+    ASSERT_EQ(outline("odd.dxf", {"--dash", "3 1 2"}), 0);
+    std::vector<std::string> dashes;
+    for (const auto& [code, value] : dxfGroups(readText(folder / "odd.dxf"))) {
+        if (code == 49) dashes.push_back(value);
+    }
+    EXPECT_EQ(dashes, (Names{"3", "-1", "2", "-3", "1", "-2"}));
     // What it cannot hold is refused before anything is drawn.
     EXPECT_EQ(outline("bad.dxf", {"--fill", "flat"}), 2);
     EXPECT_EQ(outline("bad.dxf", {"--stroke-color", "red"}), 2);

@@ -10,8 +10,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace bandvox {
 namespace {
@@ -172,9 +174,12 @@ void putLineTypes(DxfText& dxf, const StrokeOptions& options) {
         dxf.put(73, 0);
         dxf.put(40, 0);
     }
-    // Gaps are lengths below 0.
+    // Gaps are lengths below 0. Of an odd number of lengths every other turn begins with a gap.
     std::vector<double> dashes = parsedDash(options.dash);
-    if (dashes.size() % 2 == 1) dashes.insert(dashes.end(), dashes.begin(), dashes.end());
+    if (dashes.size() % 2 == 1) {
+        const std::vector<double> turn = dashes;
+        dashes.insert(dashes.end(), turn.begin(), turn.end());
+    }
     begin(kDashes);
     dxf.put(73, static_cast<int>(dashes.size()));
     double whole = 0;
