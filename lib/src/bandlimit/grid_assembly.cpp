@@ -1,6 +1,7 @@
 #include "bandlimit/grid_assembly.h"
 
 #include "bandlimit/far_tiles.h"
+#include "core/instruction_sets.h"
 
 #include <bandvox/core/parallel.h>
 
@@ -30,18 +31,39 @@ void forEachChunk(std::size_t count, const std::function<void(std::size_t, std::
     });
 }
 
+BANDVOX_FOR_EACH_INSTRUCTION_SET
+void snapToWhole(float* values, float threshold) {
+    for (openvdb::Index v = 0; v < DensityLeaf::SIZE; ++v) {
+        const float whole = __builtin_rintf(values[v]);
+        values[v] = std::abs(values[v] - whole) <= threshold ? whole : values[v];
+    }
+}
+
+BANDVOX_FOR_EACH_INSTRUCTION_SET
+void setNonzero(const float* values, DensityLeaf::NodeMaskType& active) {
+    using Word = DensityLeaf::NodeMaskType::Word;
+    constexpr openvdb::Index kBits = 8 * sizeof(Word);
+    for (openvdb::Index n = 0; n < DensityLeaf::NodeMaskType::WORD_COUNT; ++n) {
+        Word word = 0;
+        for (openvdb::Index i = 0; i < kBits; ++i) {
+            word |= Word(values[kBits * n + i] != 0 ? 1 : 0) << i;
+        }
+        active.getWord<Word>(n) = word;
+    }
+}
+
 // Makes values next to a whole number that number, voxel by voxel, so that where the blocks lie
 // does not show; sets which voxels are active. Returns false if none is.
 bool finishLeaf(DensityLeaf& leaf, const AssemblyOptions& options) {
-    const auto threshold = static_cast<float>(options.threshold);
     float* values = leaf.buffer().data();
-    DensityLeaf::NodeMaskType active;
-    for (openvdb::Index v = 0; v < DensityLeaf::SIZE; ++v) {
-        const float whole = std::nearbyint(values[v]);
-        if (std::abs(values[v] - whole) <= threshold) values[v] = whole;
-        if (options.clamp) values[v] = std::clamp(values[v], 0.0F, 1.0F);
-        if (values[v] != 0) active.setOn(v);
+    snapToWhole(values, static_cast<float>(options.threshold));
+    if (options.clamp) {
+        for (openvdb::Index v = 0; v < DensityLeaf::SIZE; ++v) {
+            values[v] = std::clamp(values[v], 0.0F, 1.0F);
+        }
     }
+    DensityLeaf::NodeMaskType active;
+    setNonzero(values, active);
     leaf.setValueMask(active);
     return !active.isOff();
 }
@@ -98,7 +120,6 @@ JoinedBlocks joinPieces(std::vector<Piece> pieces, const FarTiles& far,
             for (std::size_t i = starts[block] + 1; i < starts[block + 1]; ++i) {
                 const float* piece = pieces[i].leaf->buffer().data();
                 for (openvdb::Index v = 0; v < DensityLeaf::SIZE; ++v) sum[v] += piece[v];
-                pieces[i].leaf.reset();
             }
             far.complete(*leaf);
             float value = 0;
