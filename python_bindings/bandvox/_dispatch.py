@@ -143,12 +143,41 @@ def _outcome(status: int, said: str, place: pathlib.Path, before: Optional[Tuple
     return Outcome(0, "", warnings, tuple(str(path) for path in files), skipped, worker)
 
 
+class _Waiting:
+    """Tasks that wait for their turn, as Dask's dashboard shows them. Dask does not get a task before
+    there is room for it on a worker; without these it would take what it has for all there is."""
+
+    def __init__(self, client: Any, tasks: Sequence[Task]) -> None:
+        self.client = client
+        # No worker has this address, so it never runs, and what depends on it waits.
+        self.gate = client.submit(bool, workers=["tcp://0.0.0.0:0"], pure=False,
+                                  key=f"bandvox-free-worker-{uuid.uuid4().hex}")
+        self.futures = dict(zip((task.name for task in tasks), client.map(
+            bool, [self.gate] * len(tasks), key=[self.key(task) for task in tasks])))
+
+    @staticmethod
+    def key(task: Task) -> str:
+        return f"{task.key}-{uuid.uuid4().hex}-waiting"
+
+    def add(self, task: Task) -> None:
+        self.futures[task.name] = self.client.submit(bool, self.gate, key=self.key(task))
+
+    def remove(self, task: Task) -> None:
+        self.futures.pop(task.name).release()
+
+    def close(self) -> None:
+        self.client.cancel([self.gate, *self.futures.values()])
+
+
 class _Dispatcher:
     def __init__(self, client: Any, tasks: Sequence[Task], folder: pathlib.Path, slots: Slots,
                  retries: int) -> None:
         self.client, self.folder, self.slots, self.retries = client, folder, slots, retries
         self.waiting: Deque[Task] = collections.deque(tasks)
+        self.shown = _Waiting(client, tasks)
         self.running: Dict[Any, Tuple[Task, str]] = {}
+        # What the workers have done. As long as it is kept, the dashboard counts it.
+        self.done: Dict[Any, str] = {}
         self.tries: Dict[str, int] = collections.Counter()
         # Where a task has failed: if there is a choice it is tried elsewhere.
         self.failed_at: Dict[str, Set[str]] = {}
@@ -178,6 +207,8 @@ class _Dispatcher:
         return found
 
     def take_back_lost(self, workers: Dict[str, Any]) -> None:
+        # Dask would do again what a worker has done that was lost and comes back.
+        self.done = {future: address for future, address in self.done.items() if address in workers}
         for future, (task, address) in list(self.running.items()):
             if address not in workers and not future.done():
                 del self.running[future]
@@ -188,6 +219,7 @@ class _Dispatcher:
                                                     tries=self.tries[task.name])))
                 else:
                     self.waiting.appendleft(task)
+                    self.shown.add(task)
 
     def assign(self) -> None:
         room = self.room()
@@ -204,6 +236,7 @@ class _Dispatcher:
                     attempt, task, str(self.folder), self.slots.threads, workers=[address],
                     key=f"{task.key}-{uuid.uuid4().hex}", pure=False)
                 self.running[future] = task, address
+                self.shown.remove(task)
 
     def next_for(self, address: str) -> Optional[Task]:
         for task in self.waiting:
@@ -225,7 +258,9 @@ class _Dispatcher:
         if may_change and self.tries[task.name] <= self.retries:
             self.failed_at.setdefault(task.name, set()).add(address)
             self.waiting.append(task)
+            self.shown.add(task)
             return None
+        self.done[future] = address
         return task, outcome
 
     def run(self) -> Generator[Tuple[Task, Outcome], None, None]:
@@ -249,7 +284,8 @@ class _Dispatcher:
                     if finished:
                         yield finished
         finally:
-            self.client.cancel(list(self.running))
+            self.shown.close()
+            self.client.cancel([*self.running, *self.done])
 
 
 def dispatch(client: Any, tasks: Sequence[Task], folder: pathlib.Path, slots: Slots,

@@ -8,6 +8,8 @@ import signal
 import subprocess
 import sys
 import time
+import urllib.parse
+import urllib.request
 
 import numpy as np
 import pytest
@@ -183,6 +185,76 @@ def test_pictures_of_a_turntable(client, tmp_path):
                              "1-3", turntable=3, res="16x16", executable=COMMAND)
     assert names_in(tmp_path) == ["torus.01.png", "torus.02.png", "torus.03.png", "torus.vdb"]
     assert len(report.written) == 3
+
+
+def counts_of(dask_scheduler):
+    """What Dask's dashboard draws its bars of progress from."""
+    return {name: {state: count for state, count in prefix.active_states.items()
+                   if count and state != "forgotten"}
+            for name, prefix in dask_scheduler.task_prefixes.items() if prefix.active}
+
+
+@pytest.fixture(scope="module")
+def watched():
+    """A cluster with what of the dashboard there is without bokeh, and a function that reads its pages."""
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1",
+                                  dashboard_address="127.0.0.1:0", memory_limit="4GB") as cluster:
+        with distributed.Client(cluster) as one:
+            link = urllib.parse.urlsplit(one.dashboard_link)
+
+            def page(path):
+                with urllib.request.urlopen(f"http://{link.netloc}{path}", timeout=30) as answer:
+                    return answer.read().decode()
+
+            yield one, page
+
+
+@pytest.mark.parametrize("kind", ["convert", "shard"])
+def test_the_dashboard_shows_how_far_it_is(watched, tmp_path, kind):
+    client, page = watched
+    # One after another ends, when it is told to.
+    go = tmp_path / "go"
+    go.mkdir()
+    script = tmp_path / "patient"
+    script.write_text(f"""#!/bin/sh
+until rmdir {go} 2>/dev/null; do sleep 0.1; done
+exec {COMMAND} "$@"
+""")
+    script.chmod(0o755)
+    shown, pages = [], []
+
+    def look(done, total, name):
+        if name == "merge":
+            shown.append(client.run_on_scheduler(counts_of))
+            return
+        others = 6 - done
+        expected = {"memory": done, "processing": min(others, 1), "waiting": max(others - 1, 0)}
+        expected = {state: count for state, count in expected.items() if count}
+        wait_for(lambda: client.run_on_scheduler(counts_of).get(f"bandvox-{kind}") == expected)
+        shown.append(client.run_on_scheduler(counts_of))
+        pages.extend(page(f"/info/worker/{urllib.parse.quote(address, safe='')}.html")
+                     for address in client.scheduler_info()["workers"])
+        go.mkdir()
+
+    with distributed.get_task_stream(client=client) as stream:
+        if kind == "convert":
+            sequence(tmp_path, 6)
+            farm.run_frames(client, "convert", tmp_path / "sim.####.obj", tmp_path / "vol.####.vdb",
+                            "1-6", resolution=8, executable=str(script), progress=look)
+        else:
+            farm.convert_volume(client, "shape:cube", tmp_path / "cube.vdb", shards=6, resolution=8,
+                                executable=str(script), progress=look)
+    assert all(counts["bandvox-free-worker"] == {"no-worker": 1} for counts in shown)
+    # What runs is named on the page of its worker.
+    assert any(f"bandvox-{kind}-000" in text for text in pages)
+    names = {re.sub("-[0-9a-f]{32}$", "", one["key"]) for one in stream.data}
+    expected = {f"bandvox-{kind}-{number:04d}" for number in range(1, 7)}
+    if kind == "shard":
+        expected.add("bandvox-merge")
+        assert shown[-1]["bandvox-merge"] == {"memory": 1}
+    assert names == expected
+    # Nothing is left that waits.
+    wait_for(lambda: client.run_on_scheduler(counts_of) == {})
 
 
 def flaky(folder, failures, status):
