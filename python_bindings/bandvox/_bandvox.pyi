@@ -47,7 +47,13 @@ class Grid:
     def blocks(self) -> Iterator[Tuple[Voxel, Floats]]: ...
     def copy(self) -> Grid: ...
     def write(
-        self, path: Path, *, half: bool = False, compression: str = "blosc"
+        self,
+        path: Path,
+        *,
+        half: bool = False,
+        compression: str = "blosc",
+        threads: int = 0,
+        progress: Optional[Progress] = None,
     ) -> None: ...
 
 class VectorGrid:
@@ -81,7 +87,13 @@ class VectorGrid:
     def blocks(self) -> Iterator[Tuple[Voxel, Floats]]: ...
     def copy(self) -> VectorGrid: ...
     def write(
-        self, path: Path, *, half: bool = False, compression: str = "blosc"
+        self,
+        path: Path,
+        *,
+        half: bool = False,
+        compression: str = "blosc",
+        threads: int = 0,
+        progress: Optional[Progress] = None,
     ) -> None: ...
 
 class MaskGrid:
@@ -115,7 +127,13 @@ class MaskGrid:
     def blocks(self) -> Iterator[Tuple[Voxel, npt.NDArray[np.bool_]]]: ...
     def copy(self) -> MaskGrid: ...
     def write(
-        self, path: Path, *, half: bool = False, compression: str = "blosc"
+        self,
+        path: Path,
+        *,
+        half: bool = False,
+        compression: str = "blosc",
+        threads: int = 0,
+        progress: Optional[Progress] = None,
     ) -> None: ...
 
 class Mesh:
@@ -394,7 +412,9 @@ def info(
 def iso_of_volume(
     grid: Grid, volume: float, *, progress: Optional[Progress] = None
 ) -> Tuple[float, float]: ...
-def join_shards(grids: Iterable[AnyGrid]) -> AnyGrid: ...
+def join_shards(
+    grids: Iterable[AnyGrid], *, threads: int = 0, progress: Optional[Progress] = None
+) -> AnyGrid: ...
 def merge(
     grids: Iterable[Union[Grid, MaskGrid]],
     *,
@@ -429,7 +449,12 @@ def outline(
     aperture: Optional[float] = None,
     fov: Optional[float] = None,
     frame: Optional[float] = None,
+    grid: Optional[str] = None,
     iso: Optional[Iso] = None,
+    resolution: int = 256,
+    voxel_size: float = 0.0,
+    cutoff: float = 0.16,
+    order: float = 2.0,
     isophotes: Sequence[float] = [],
     suggestive: Optional[float] = None,
     light: Sequence[float] = [-0.4, 0.7, 0.8],
@@ -452,7 +477,9 @@ def read_array(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Grid: ...
-def read_vdb(path: Path) -> List[Any]: ...
+def read_vdb(
+    path: Path, *, threads: int = 0, progress: Optional[Progress] = None
+) -> List[Any]: ...
 def resample(
     grid: AnyGrid,
     *,
@@ -546,6 +573,8 @@ def write_vdb(
     *,
     half: bool = False,
     compression: str = "blosc",
+    threads: int = 0,
+    progress: Optional[Progress] = None,
 ) -> None: ...
 def _render(
     scene: Dict[str, Any],
@@ -554,5 +583,9 @@ def _render(
     progress: Optional[Progress],
 ) -> Tuple[Floats, Dict[str, Floats], Dict[str, Any], Optional[Tuple[int, int, int, int]]]: ...
 def _turntable(
-    scene: Dict[str, Any], picture: Dict[str, Any], pictures: int
+    scene: Dict[str, Any],
+    picture: Dict[str, Any],
+    pictures: int,
+    threads: int,
+    progress: Optional[Progress],
 ) -> List[Dict[str, Any]]: ...

@@ -130,7 +130,7 @@ def render(
     shadows: objects stop the light of lamps. gather: directions in which a matt surface looks for light
     from around, no farther than gather_distance, world units, 0: any; bounces: how often it goes on from
     surface to surface. depth: how often a line of sight is mirrored and refracted. volume_method:
-    'steps' of so many voxels (step), or 'tracking'. shading: 'spectral', or an older method.
+    'steps' or 'tracking'; step: voxels from place to place, 0.05 to 16. shading: 'spectral', or an older method.
 
     read_error: of what is read between the nodes, 1e-6 to 0.1; cache_size: memory for it, MB, 0 chooses.
     seed: of all that is random. preview: called now and then with the picture as far as it is, (height,
@@ -156,7 +156,8 @@ def turntable(source: Seen, pictures: int, **options: Any) -> List[Dict[str, Any
     scene = _scene(source, *(chosen[name] for name in (
         "iso", "color", "light", "light_at", "light_color", "light_size", "ambient", "lights",
         "environment")))
-    return _bandvox._turntable(scene, _picture(chosen), pictures)
+    return _bandvox._turntable(scene, _picture(chosen), pictures, chosen["threads"],
+                               chosen["progress"])
 
 
 def _picture(arguments: Dict[str, Any]) -> Dict[str, Any]:

@@ -1,5 +1,6 @@
 // Grids to and from .vdb files, and what Python has for each type of them.
 
+#include "background.h"
 #include "bindings.h"
 #include "choices.h"
 #include "grid_object.h"
@@ -18,12 +19,9 @@ namespace py = pybind11;
 
 namespace {
 
-py::list readGrids(const std::filesystem::path& path) {
-    openvdb::GridPtrVec grids;
-    {
-        const py::gil_scoped_release unlocked;
-        grids = readVdb(path);
-    }
+py::list readGrids(const std::filesystem::path& path, int threads, const py::object& progress) {
+    const openvdb::GridPtrVec grids =
+        inBackground(progress, threads, [&](Progress& watched) { return readVdb(path, watched); });
     py::list result;
     for (const auto& grid : grids) {
         if (py::object object = objectOf(grid); !object.is_none()) result.append(object);
@@ -32,10 +30,12 @@ py::list readGrids(const std::filesystem::path& path) {
 }
 
 void writeGrids(const std::filesystem::path& path, const py::iterable& objects, bool isHalf,
-                const std::string& compression) {
+                const std::string& compression, int threads, const py::object& progress) {
     openvdb::GridCPtrVec grids;
     for (const py::handle object : objects) grids.push_back(gridOf(object));
-    writeGridFiles(path, grids, vdbOptions(isHalf, compression));
+    const VdbWriteOptions options = vdbOptions(isHalf, compression);
+    runInBackground([&](Progress& watched) { writeGridFiles(path, grids, options, watched); },
+                    progress, threads);
 }
 
 /// Grids of other numbers as floats; null for what is none.
@@ -64,21 +64,25 @@ openvdb::BoolGrid::Ptr truthsOf(const openvdb::GridBase::Ptr& grid) {
 }  // namespace
 
 void writeGridFiles(const std::filesystem::path& path, openvdb::GridCPtrVec grids,
-                    const VdbWriteOptions& options) {
-    const py::gil_scoped_release unlocked;
+                    const VdbWriteOptions& options, Progress& progress) {
+    const std::string ending = path.extension().string();
+    if (ending != ".vdb" && ending != ".usda") {
+        throw Error(ErrorKind::Usage,
+                    "path is '" + path.string() + "'; expected a .vdb or a .usda file");
+    }
     // What densities say of themselves has to hold for what is in the file.
     for (openvdb::GridBase::ConstPtr& grid : grids) {
         if (!options.half || !densityMetadata(*grid)) continue;
         const auto rounded = openvdb::gridPtrCast<openvdb::FloatGrid>(grid->deepCopyGrid());
         if (!rounded) continue;
-        roundAndRestate(*rounded);
+        roundAndRestate(*rounded, progress);
         grid = rounded;
     }
-    if (path.extension() != ".usda") return writeVdb(path, grids, options);
+    if (ending == ".vdb") return writeVdb(path, grids, options, progress);
     AtomicFile usd(path);
     AtomicFile volume(std::filesystem::path(path).replace_extension(".vdb"));
     writeUsdVolume(usd, volume.target().filename().string(), grids, options.half);
-    writeVdb(volume, grids, options);
+    writeVdb(volume, grids, options, progress);
     // The volume gets its name first: nothing ever refers to one that is not there.
     volume.commit();
     usd.commit();
@@ -123,12 +127,14 @@ openvdb::GridBase::Ptr gridOf(const py::handle& object) {
 }
 
 void bindGridFiles(py::module_& module) {
-    module.def("read_vdb", &readGrids, py::arg("path"),
+    module.def("read_vdb", &readGrids, py::arg("path"), py::kw_only(), py::arg("threads") = 0,
+               py::arg("progress") = py::none(),
                "The grids of a .vdb file, a list: of floats, doubles and whole numbers as Grid, of "
                "vec3s as VectorGrid, of bools as MaskGrid; others are left out. Raises InputError "
                "for files that are none.");
     module.def("write_vdb", &writeGrids, py::arg("path"), py::arg("grids"), py::kw_only(),
-               py::arg("half") = false, py::arg("compression") = "blosc",
+               py::arg("half") = false, py::arg("compression") = "blosc", py::arg("threads") = 0,
+               py::arg("progress") = py::none(),
                R"(Writes grids to a .vdb file, whole or not at all.
 
 A path that ends in .usda gets a USD volume that refers to a .vdb file of its name, which is written

@@ -203,14 +203,13 @@ py::object vectorOrNone(const std::optional<openvdb::Vec3d>& vector) {
 }
 
 /// The keyword arguments of each camera around a scene.
-py::list camerasAround(const py::dict& arguments, const py::dict& picture, int pictures) {
+py::list camerasAround(const py::dict& arguments, const py::dict& picture, int pictures,
+                       int threads, const py::object& progress) {
     const Scene scene = sceneOf(arguments);
     const PictureOptions options = pictureOptionsOf(picture);
-    std::vector<CameraOptions> cameras;
-    {
-        const py::gil_scoped_release unlocked;
-        cameras = turntable(scene, options, pictures);
-    }
+    const std::vector<CameraOptions> cameras = inBackground(
+        progress, threads,
+        [&](Progress& watched) { return turntable(scene, options, pictures, watched); });
     py::list views;
     for (const CameraOptions& camera : cameras) {
         const bool isParallel = camera.projection == CameraOptions::Projection::Orthographic;
@@ -234,7 +233,7 @@ void bindRender(py::module_& module) {
     module.def("_render", &draw, py::arg("scene"), py::arg("picture"), py::arg("threads"),
                py::arg("progress"));
     module.def("_turntable", &camerasAround, py::arg("scene"), py::arg("picture"),
-               py::arg("pictures"));
+               py::arg("pictures"), py::arg("threads"), py::arg("progress"));
     module.def(
         "write_image", &writePicture, py::arg("path"), py::arg("image"),
         py::arg("channels") = py::none(), py::kw_only(), py::arg("color") = true,

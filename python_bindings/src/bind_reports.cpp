@@ -37,7 +37,7 @@ py::object objectOf(const Json& json) {
 
 Json fileReport(const std::filesystem::path& path, Progress& progress) {
     if (isMeshFile(path)) return app::meshReport(path.string(), progress);
-    const openvdb::GridPtrVec grids = readVdb(path);
+    const openvdb::GridPtrVec grids = readVdb(path, progress);
     Json report;
     report["file"] = path.string();
     report["file_bytes"] = std::filesystem::file_size(path);

@@ -160,20 +160,22 @@ py::object merge(const py::iterable& objects, const std::string& operation,
     return objectOf(result.grid);
 }
 
-py::object join(const py::iterable& objects) {
+py::object join(const py::iterable& objects, int threads, const py::object& progress) {
     std::vector<openvdb::GridBase::Ptr> parts;
     std::vector<std::string> names;
     for (const py::handle object : objects) {
-        // Parts are used up, and those of Python stay.
-        parts.push_back(gridOf(object)->deepCopyGrid());
+        parts.push_back(gridOf(object));
         names.push_back("part " + std::to_string(parts.size()));
     }
     if (parts.empty()) throw Error(ErrorKind::Usage, "found no part; expected all of a grid");
-    JoinedGrid joined;
-    {
-        const py::gil_scoped_release unlocked;
-        joined = joinShards(parts, names);
-    }
+    const JoinedGrid joined = inBackground(progress, threads, [&](Progress& watched) {
+        // Parts are used up, and those of Python stay.
+        for (auto& part : parts) {
+            watched.throwIfInterrupted();
+            part = part->deepCopyGrid();
+        }
+        return joinShards(parts, names, watched);
+    });
     warn(joined.warnings);
     return objectOf(joined.grid);
 }
@@ -188,7 +190,8 @@ void bindMerging(py::module_& module) {
 operation: 'union', 'sum', 'max', 'blend', 'difference' or 'intersection'. weights: of a sum or a
 blend, one for each. clamp: limit the result to 0 .. 1. resample: bring what is on another lattice
 to that of the first; otherwise lattices may be whole voxels apart, no more.)");
-    module.def("join_shards", &join, py::arg("grids"),
+    module.def("join_shards", &join, py::arg("grids"), py::kw_only(), py::arg("threads") = 0,
+               py::arg("progress") = py::none(),
                "The whole grid of all the parts that bandlimit(shard=(i, n)) has made, or `convert "
                "--shard`; they stay as they are. Raises InputError if one is missing.");
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bandvox/core/progress.h>
 #include <bandvox/grid/density_grid.h>
 
 #include <openvdb/openvdb.h>
@@ -34,10 +35,10 @@ openvdb::GridBase::Ptr gridOf(const pybind11::handle& object);
 /// compression: as `--compression` says it. Throws Error(ErrorKind::Usage) for another word.
 VdbWriteOptions vdbOptions(bool isHalf, const std::string& compression);
 
-/// Writes grids to a .vdb file, or to a .usda file and the .vdb file that it refers to, without the
-/// interpreter's lock. Throws as writeVdb and writeUsdVolume.
+/// Writes grids to a .vdb file, or to a .usda file and the .vdb file that it refers to. Throws as
+/// writeVdb and writeUsdVolume.
 void writeGridFiles(const std::filesystem::path& path, openvdb::GridCPtrVec grids,
-                    const VdbWriteOptions& options);
+                    const VdbWriteOptions& options, Progress& progress);
 
 void bindGrids(pybind11::module_& module);
 

@@ -1,3 +1,5 @@
+#include "stop_after.h"
+
 #include <bandvox/core/error.h>
 #include <bandvox/core/parallel.h>
 #include <bandvox/grid/density_grid.h>
@@ -410,6 +412,44 @@ TEST_F(DensityGridFile, FilesThatGoOnWithRubbishAreRefused) {
         file.close();
         EXPECT_EQ(kindOfReadError(), ErrorKind::Input) << cut << " of " << size;
     }
+}
+
+// Of a type whose leaves this library reads and writes, and of one whose leaves OpenVDB does.
+TEST_F(DensityGridFile, IsReadAndWrittenUntilTheWorkIsToStop) {
+    const auto floats = openvdb::FloatGrid::create(0.0F);
+    const auto wholes = openvdb::Int32Grid::create(0);
+    std::mt19937 random(7);
+    for (int i = 0; i < 120 * 120 * 120; ++i) {
+        const Coord at(i % 120, i / 120 % 120, i / 14400);
+        floats->tree().setValue(at, static_cast<float>(random() % 1000000));
+        wholes->tree().setValue(at, static_cast<int>(random() % 1000000));
+    }
+    constexpr int kMegabytes = 6;
+    const VdbWriteOptions options{.compression = VdbWriteOptions::Compression::None};
+    for (const openvdb::GridBase::Ptr& grid :
+         {openvdb::GridBase::Ptr(floats), openvdb::GridBase::Ptr(wholes)}) {
+        SCOPED_TRACE(grid->valueType());
+        fs::remove(path);
+        expectStopsMidway(1000, [&](Progress& progress) {
+            fs::remove(path);
+            writeVdb(path, {grid}, options, progress);
+        });
+        EXPECT_FALSE(fs::exists(path));
+        writeVdb(path, {grid}, options);
+        expectStopsMidway(kMegabytes, [&](Progress& progress) { readVdb(path, progress); });
+        expectStopsMidway(kMegabytes, [&](Progress& progress) {
+            std::ifstream file(path, std::ios::binary);
+            readVdb(file, "a stream", progress);
+        });
+    }
+}
+
+TEST(RoundToHalf, StopsWhenInterrupted) {
+    expectStopsMidway(20, [](Progress& progress) {
+        const auto grid = sampleGrid();
+        roundAndRestate(*grid, progress);
+        densityIntegral(*grid, progress);
+    });
 }
 
 TEST_F(DensityGridFile, ComesFromAStreamThatCannotGoBack) {

@@ -5,6 +5,11 @@ import subprocess
 import sys
 import time
 
+import numpy as np
+import pytest
+
+import bandvox
+
 PROGRAM = """
 import bandvox, sys
 print("starting", flush=True)
@@ -24,3 +29,45 @@ def test_an_interruption_ends_the_work():
     out, _ = process.communicate(timeout=60)
     assert out == "interrupted\n"
     assert process.returncode == 7
+
+
+@pytest.fixture(scope="module")
+def noise():
+    """A grid that takes long enough to pack."""
+    return bandvox.Grid.from_array(np.random.RandomState(1).random_sample((160, 160, 160)) + 1)
+
+
+def interrupt(stage, fraction):
+    signal.raise_signal(signal.SIGINT)
+
+
+def test_nothing_is_written_when_writing_is_interrupted(noise, tmp_path):
+    def fails(stage, fraction):
+        assert stage in ("", "writing")
+        raise LookupError(stage)
+
+    for write in (noise.write, lambda path, **options: bandvox.write_vdb(path, [noise], **options)):
+        with pytest.raises(KeyboardInterrupt):
+            write(tmp_path / "noise.vdb", compression="zip", threads=1, progress=interrupt)
+        with pytest.raises(LookupError):
+            write(tmp_path / "noise.vdb", compression="zip", threads=1, progress=fails)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_reading_is_interrupted(noise, tmp_path):
+    noise.write(tmp_path / "noise.vdb", compression="zip")
+    with pytest.raises(KeyboardInterrupt):
+        bandvox.read_vdb(tmp_path / "noise.vdb", threads=1, progress=interrupt)
+    assert len(bandvox.read_vdb(tmp_path / "noise.vdb")) == 1
+
+
+def test_a_turntable_is_interrupted(noise):
+    with pytest.raises(KeyboardInterrupt):
+        bandvox.turntable(noise, 100000, progress=interrupt)
+
+
+def test_joining_is_interrupted():
+    parts = [bandvox.bandlimit("shape:cube", resolution=400, shard=(i, 2)) for i in (1, 2)]
+    with pytest.raises(KeyboardInterrupt):
+        bandvox.join_shards(parts, threads=1, progress=interrupt)
+    assert bandvox.join_shards(parts).active_voxel_count > 400**3

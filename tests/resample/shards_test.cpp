@@ -1,5 +1,7 @@
 // Parts of grids, made apart and joined, against the whole.
 
+#include "stop_after.h"
+
 #include <bandvox/bandlimit/field_to_density.h>
 #include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/core/error.h>
@@ -159,6 +161,19 @@ TEST(Shards, OfResampledGridsJoinToTheWhole) {
             });
         }
     }
+}
+
+TEST(Shards, AreJoinedUntilTheWorkIsToStop) {
+    const auto source = makeShapeBoundary("shape:torus");
+    std::vector<GridBase::Ptr> made;
+    for (int i = 1; i <= 3; ++i) {
+        made.push_back(surfaceToDensity(*source, smallTiles({i, 3}, 0.05)).grid);
+    }
+    expectStopsMidway(100, [&](Progress& progress) {
+        std::vector<GridBase::Ptr> parts;
+        for (const auto& part : made) parts.push_back(part->deepCopyGrid());
+        joinShards(parts, {"a", "b", "c"}, progress);
+    });
 }
 
 ErrorKind kindOfJoining(const std::vector<GridBase::Ptr>& parts) {

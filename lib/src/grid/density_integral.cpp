@@ -38,7 +38,7 @@ double sumOfActive(const Leaf& leaf) {
 
 }  // namespace
 
-double densityIntegral(const openvdb::FloatGrid& grid) {
+double densityIntegral(const openvdb::FloatGrid& grid, Progress& progress) {
     // Sum each leaf by itself first, so that many small values are not lost beside a large sum.
     std::vector<const Leaf*> leaves;
     grid.tree().getNodes(leaves);
@@ -46,6 +46,7 @@ double densityIntegral(const openvdb::FloatGrid& grid) {
     constexpr std::size_t kLeavesPerTask = 1024;
     const std::size_t tasks = (leaves.size() + kLeavesPerTask - 1) / kLeavesPerTask;
     parallelFor(static_cast<std::int64_t>(tasks), [&](std::int64_t task) {
+        progress.throwIfInterrupted();
         const std::size_t begin = static_cast<std::size_t>(task) * kLeavesPerTask;
         const std::size_t end = std::min(begin + kLeavesPerTask, leaves.size());
         for (std::size_t i = begin; i < end; ++i) {

@@ -2,6 +2,8 @@
 
 #include "grid/byte_source.h"
 
+#include <bandvox/core/progress.h>
+
 #include <openvdb/openvdb.h>
 
 #include <cstddef>
@@ -110,22 +112,29 @@ class ReadGuard {
     std::uint64_t mChunkBytes = 0;
 };
 
-/// A stretch of a source that is read under a guard.
+/// A stretch of a source that is read under a guard, until the work is to stop: then reading throws
+/// Error(ErrorKind::Interrupted), as a stream does that is told to throw when it is bad.
 class GuardedBuffer : public SourceBuffer {
   public:
     /// All of a source.
-    explicit GuardedBuffer(const ByteSource& source)
-        : SourceBuffer(source, 0, source.size()), mGuard(source.size()) {}
+    GuardedBuffer(const ByteSource& source, const Progress& progress)
+        : SourceBuffer(source, 0, source.size()), mGuard(source.size()), mProgress(progress) {}
 
-    /// The bytes from `begin` up to `end`, which are whole leaves of the tree that `guard` watches;
-    /// they are read by `stream`.
-    GuardedBuffer(const ByteSource& source, std::streamoff begin, std::streamoff end,
-                  const ReadGuard& guard, std::ios_base& stream)
-        : SourceBuffer(source, begin, end), mGuard(guard.forLeaves(stream, end - begin)) {}
+    /// The bytes of another from `begin` up to `end`, which are whole leaves of the tree that its
+    /// guard watches; they are read by `stream`.
+    GuardedBuffer(const GuardedBuffer& whole, std::streamoff begin, std::streamoff end,
+                  std::ios_base& stream)
+        : SourceBuffer(whole.source(), begin, end),
+          mGuard(whole.mGuard.forLeaves(stream, end - begin)),
+          mProgress(whole.mProgress) {}
 
     ReadGuard& guard() { return mGuard; }
 
   protected:
+    int_type underflow() override {
+        mProgress.throwIfInterrupted();
+        return SourceBuffer::underflow();
+    }
     std::streamsize xsgetn(char* to, std::streamsize count) override {
         if (!mGuard.mayRead(count)) return 0;
         const std::streamsize read = SourceBuffer::xsgetn(to, count);
@@ -146,6 +155,7 @@ class GuardedBuffer : public SourceBuffer {
     }
 
     ReadGuard mGuard;
+    const Progress& mProgress;
 };
 
 }  // namespace bandvox

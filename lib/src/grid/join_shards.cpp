@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <memory>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -77,8 +78,9 @@ void requireSameKind(const openvdb::GridBase& first, const openvdb::GridBase& ot
 // Adds the values of a part, where it has any, to those of the others, which have none there.
 // Blocks that several have a share of are added to `shared`.
 template <typename Grid>
-void addPart(Grid& whole, Grid& part, std::set<openvdb::Coord>& shared) {
+void addPart(Grid& whole, Grid& part, std::set<openvdb::Coord>& shared, const Progress& progress) {
     using Tree = typename Grid::TreeType;
+    using PartLeaf = typename Tree::LeafNodeType;
     Tree& tree = whole.tree();
     auto tile = part.cbeginValueAll();
     tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
@@ -86,19 +88,20 @@ void addPart(Grid& whole, Grid& part, std::set<openvdb::Coord>& shared) {
         if (!tile.isValueOn() && *tile == part.background()) continue;
         tree.addTile(tile.getLevel(), tile.getBoundingBox().min(), *tile, tile.isValueOn());
     }
-    std::vector<typename Tree::LeafNodeType*> leaves;
-    part.tree().stealNodes(leaves, part.background(), /*state=*/false);
-    for (auto* leaf : leaves) {
+    std::vector<PartLeaf*> stolen;
+    part.tree().stealNodes(stolen, part.background(), /*state=*/false);
+    std::vector<std::unique_ptr<PartLeaf>> leaves(stolen.begin(), stolen.end());
+    for (auto& leaf : leaves) {
+        progress.throwIfInterrupted();
         auto* there = tree.probeLeaf(leaf->origin());
         if (!there) {
-            tree.addLeaf(leaf);
+            tree.addLeaf(leaf.release());
             continue;
         }
         for (auto value = leaf->cbeginValueOn(); value; ++value) {
             there->setValueOn(value.pos(), *value);
         }
         shared.insert(leaf->origin());
-        delete leaf;
     }
 }
 
@@ -114,7 +117,7 @@ void makeTiles(openvdb::FloatGrid& grid, const std::set<openvdb::Coord>& shared)
 }
 
 // Limits a density to [0, 1], as where shells overlap.
-void limitDensity(openvdb::FloatGrid& grid) {
+void limitDensity(openvdb::FloatGrid& grid, const Progress& progress) {
     auto tile = grid.beginValueOn();
     tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
@@ -122,6 +125,7 @@ void limitDensity(openvdb::FloatGrid& grid) {
         if (*tile == 0) tile.setActiveState(false);
     }
     for (auto leaf = grid.tree().beginLeaf(); leaf; ++leaf) {
+        progress.throwIfInterrupted();
         for (auto value = leaf->beginValueOn(); value; ++value) {
             value.setValue(std::clamp(*value, 0.0F, 1.0F));
             if (*value == 0) value.setValueOff();
@@ -131,20 +135,23 @@ void limitDensity(openvdb::FloatGrid& grid) {
 
 template <typename Grid>
 typename Grid::Ptr joinParts(const std::vector<openvdb::GridBase::Ptr>& parts,
-                             std::set<openvdb::Coord>& shared) {
+                             std::set<openvdb::Coord>& shared, Progress& progress) {
     const auto first = openvdb::gridPtrCast<Grid>(parts.front());
     auto whole = Grid::create(first->background());
     static_cast<openvdb::MetaMap&>(*whole) = static_cast<const openvdb::MetaMap&>(*first);
     for (const char* name : {kShard, kOverlaps, kRefinements}) whole->removeMeta(name);
     forgetPart(*whole);
     whole->setTransform(first->transform().copy());
-    for (const auto& part : parts) addPart(*whole, *openvdb::gridPtrCast<Grid>(part), shared);
+    for (const auto& part : parts) {
+        addPart(*whole, *openvdb::gridPtrCast<Grid>(part), shared, progress);
+        progress.advance();
+    }
     return whole;
 }
 
 // The errors of a whole are the largest of its parts; one that is not known is not known of all.
 void joinMetadata(openvdb::FloatGrid& whole, const std::vector<openvdb::GridBase::Ptr>& parts,
-                  bool isLimited) {
+                  bool isLimited, Progress& progress) {
     auto metadata = densityMetadata(whole);
     if (!metadata) return;
     const auto larger = [](double a, double b) {
@@ -158,7 +165,7 @@ void joinMetadata(openvdb::FloatGrid& whole, const std::vector<openvdb::GridBase
         metadata->storageError = larger(metadata->storageError, other->storageError);
     }
     metadata->clamped = metadata->clamped || isLimited;
-    metadata->gridVolume = densityIntegral(whole);
+    metadata->gridVolume = densityIntegral(whole, progress);
     setDensityMetadata(whole, *metadata);
 }
 
@@ -225,7 +232,7 @@ std::optional<ShardMetadata> shardMetadata(const openvdb::GridBase& grid) {
 }
 
 JoinedGrid joinShards(const std::vector<openvdb::GridBase::Ptr>& parts,
-                      const std::vector<std::string>& names) {
+                      const std::vector<std::string>& names, Progress& progress) {
     if (parts.empty() || names.size() != parts.size()) {
         throw Error(ErrorKind::Usage, "joining needs the parts of a grid, and a name of each");
     }
@@ -240,18 +247,19 @@ JoinedGrid joinShards(const std::vector<openvdb::GridBase::Ptr>& parts,
         most = std::max(most, metadata->refinements);
     }
 
+    const ProgressStage stage(progress, "joining", static_cast<std::int64_t>(parts.size()));
     JoinedGrid result;
     std::set<openvdb::Coord> shared;
     if (parts.front()->isType<openvdb::FloatGrid>()) {
-        auto grid = joinParts<openvdb::FloatGrid>(parts, shared);
+        auto grid = joinParts<openvdb::FloatGrid>(parts, shared, progress);
         makeTiles(*grid, shared);
-        if (overlaps) limitDensity(*grid);
+        if (overlaps) limitDensity(*grid, progress);
         openvdb::tools::pruneInactive(grid->tree(), /*threaded=*/false);
         openvdb::tools::pruneTiles(grid->tree(), 0.0F, /*threaded=*/false);
-        joinMetadata(*grid, parts, overlaps);
+        joinMetadata(*grid, parts, overlaps, progress);
         result.grid = grid;
     } else if (parts.front()->isType<openvdb::Vec3SGrid>()) {
-        result.grid = joinParts<openvdb::Vec3SGrid>(parts, shared);
+        result.grid = joinParts<openvdb::Vec3SGrid>(parts, shared, progress);
     } else {
         failJoin(names.front() + " holds a grid of " + parts.front()->valueType() +
                  "; parts are joined of floats and of vectors of floats");

@@ -89,8 +89,7 @@ class QuickGrid final : public openvdb::Grid<Tree> {
         const std::ios::iostate exceptions = stream.exceptions();
         parallelFor(static_cast<std::int64_t>(places.size()) - 1, [&](std::int64_t task) {
             std::istream part(nullptr);
-            GuardedBuffer buffer(mBuffer.source(), places[task], places[task + 1], mBuffer.guard(),
-                                 part);
+            GuardedBuffer buffer(mBuffer, places[task], places[task + 1], part);
             part.rdbuf(&buffer);
             part.exceptions(exceptions);
             auto copy = std::make_shared<openvdb::io::StreamMetadata>(*metadata);

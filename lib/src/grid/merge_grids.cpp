@@ -187,7 +187,10 @@ openvdb::FloatGrid::Ptr mergeJoint(const std::vector<JointGrid>& grids, const Me
         progress.advance();
     });
     auto merged = openvdb::FloatGrid::create(0.0F);
-    for (MergedPart& part : parts) part.moveTo(merged->tree());
+    for (MergedPart& part : parts) {
+        progress.throwIfInterrupted();
+        part.moveTo(merged->tree());
+    }
     openvdb::tools::pruneTiles(merged->tree(), 0.0F, /*threaded=*/false);
     return merged;
 }

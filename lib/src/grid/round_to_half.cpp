@@ -11,7 +11,7 @@
 
 namespace bandvox {
 
-double roundToHalf(openvdb::FloatGrid& grid) {
+double roundToHalf(openvdb::FloatGrid& grid, Progress& progress) {
     double largest = 0;
     const auto round = [&largest](float value) {
         const float rounded = openvdb::io::truncateRealToHalf(value);
@@ -20,6 +20,7 @@ double roundToHalf(openvdb::FloatGrid& grid) {
     };
     std::vector<openvdb::Coord> constant;
     for (auto leaf = grid.tree().beginLeaf(); leaf; ++leaf) {
+        progress.throwIfInterrupted();
         float* values = leaf->buffer().data();
         std::transform(values, values + openvdb::FloatTree::LeafNodeType::SIZE, values, round);
         if (isConstantLeaf(*leaf)) constant.push_back(leaf->origin());
@@ -36,12 +37,12 @@ double roundToHalf(openvdb::FloatGrid& grid) {
     return largest;
 }
 
-void roundAndRestate(openvdb::FloatGrid& grid) {
-    const double change = roundToHalf(grid);
+void roundAndRestate(openvdb::FloatGrid& grid, Progress& progress) {
+    const double change = roundToHalf(grid, progress);
     auto metadata = densityMetadata(grid);
     if (!metadata) return;
     metadata->storageError = std::max(metadata->storageError, change);
-    metadata->gridVolume = densityIntegral(grid);
+    metadata->gridVolume = densityIntegral(grid, progress);
     setDensityMetadata(grid, *metadata);
 }
 

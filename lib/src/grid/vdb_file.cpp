@@ -3,6 +3,7 @@
 #include "grid/sound_extent.h"
 #include "grid/sound_transform.h"
 #include "grid/vdb_archive.h"
+#include "grid/watched_output.h"
 
 #include <bandvox/core/atomic_file.h>
 #include <bandvox/core/error.h>
@@ -49,10 +50,12 @@ std::uint32_t compressionFlags(VdbWriteOptions::Compression compression) {
     throw Error(ErrorKind::Input, name + ": " + why);
 }
 
-openvdb::GridPtrVec readGrids(const ByteSource& source, const std::string& name) {
+openvdb::GridPtrVec readGrids(const ByteSource& source, const std::string& name,
+                              Progress& progress) {
     constexpr const char* kDamaged = "it is not a whole VDB file: it ends too early, or is damaged";
     initializeOpenVdb();
-    GuardedBuffer buffer(source);
+    const ProgressStage stage(progress, "reading", 0);
+    GuardedBuffer buffer(source, progress);
     openvdb::GridPtrVec grids;
     try {
         // A stream that throws stops the reader at the end of a file that was cut short; its own
@@ -60,6 +63,8 @@ openvdb::GridPtrVec readGrids(const ByteSource& source, const std::string& name)
         std::istream stream(&buffer);
         stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
         grids = VdbArchive().read(stream, buffer);
+    } catch (const Error&) {
+        throw;
     } catch (const std::ios::failure&) {
         failInput(name, kDamaged);
     } catch (const std::bad_array_new_length&) {
@@ -84,10 +89,11 @@ openvdb::GridPtrVec readGrids(const ByteSource& source, const std::string& name)
 }
 
 // All that a stream holds.
-std::string readBytes(std::istream& stream, const std::string& name) {
+std::string readBytes(std::istream& stream, const std::string& name, const Progress& progress) {
     std::string bytes;
     std::array<char, 65536> part;
     do {
+        progress.throwIfInterrupted();
         stream.read(part.data(), part.size());
         bytes.append(part.data(), static_cast<std::size_t>(stream.gcount()));
     } while (stream);
@@ -99,8 +105,10 @@ std::string readBytes(std::istream& stream, const std::string& name) {
 
 }  // namespace
 
-void writeVdb(AtomicFile& file, const openvdb::GridCPtrVec& grids, const VdbWriteOptions& options) {
+void writeVdb(AtomicFile& file, const openvdb::GridCPtrVec& grids, const VdbWriteOptions& options,
+              Progress& progress) {
     initializeOpenVdb();
+    const ProgressStage stage(progress, "writing", 0);
     // Copies that share the trees carry the "save as half" flag without touching the caller's
     // grids.
     openvdb::GridCPtrVec saved;
@@ -117,7 +125,10 @@ void writeVdb(AtomicFile& file, const openvdb::GridCPtrVec& grids, const VdbWrit
     try {
         std::ofstream stream = file.open();
         stream.exceptions(std::ios::badbit | std::ios::failbit);
-        archive.writeGrids(stream, saved, /*seekable=*/!file.inPlace());
+        WatchedOutput buffer(*stream.rdbuf(), progress);
+        std::ostream watched(&buffer);
+        watched.exceptions(std::ios::badbit | std::ios::failbit);
+        archive.writeGrids(watched, saved, /*seekable=*/!file.inPlace());
         stream.close();
     } catch (const std::ios::failure&) {
         throw failed(std::strerror(errno));
@@ -127,13 +138,13 @@ void writeVdb(AtomicFile& file, const openvdb::GridCPtrVec& grids, const VdbWrit
 }
 
 void writeVdb(const fs::path& path, const openvdb::GridCPtrVec& grids,
-              const VdbWriteOptions& options) {
+              const VdbWriteOptions& options, Progress& progress) {
     AtomicFile file(path);
-    writeVdb(file, grids, options);
+    writeVdb(file, grids, options, progress);
     file.commit();
 }
 
-openvdb::GridPtrVec readVdb(const fs::path& path) {
+openvdb::GridPtrVec readVdb(const fs::path& path, Progress& progress) {
     std::error_code ignored;
     if (!fs::exists(path, ignored)) failInput(path.string(), "there is no such file");
     if (fs::is_directory(path, ignored)) {
@@ -142,19 +153,19 @@ openvdb::GridPtrVec readVdb(const fs::path& path) {
     if (!fs::is_regular_file(path, ignored)) {
         std::ifstream stream(path, std::ios::binary);
         if (!stream) failInput(path.string(), "it cannot be opened for reading");
-        return readVdb(stream, path.string());
+        return readVdb(stream, path.string(), progress);
     }
     const auto size = static_cast<std::streamoff>(fs::file_size(path, ignored));
     if (size == 0) failInput(path.string(), "the file is empty");
     const FileBytes bytes(path, size);
     if (!bytes.isOpen()) failInput(path.string(), "it cannot be opened for reading");
-    return readGrids(bytes, path.string());
+    return readGrids(bytes, path.string(), progress);
 }
 
-openvdb::GridPtrVec readVdb(std::istream& stream, const std::string& name) {
-    std::string bytes = readBytes(stream, name);
+openvdb::GridPtrVec readVdb(std::istream& stream, const std::string& name, Progress& progress) {
+    std::string bytes = readBytes(stream, name, progress);
     if (bytes.empty()) failInput(name, "it is empty");
-    return readGrids(MemoryBytes(std::move(bytes)), name);
+    return readGrids(MemoryBytes(std::move(bytes)), name, progress);
 }
 
 }  // namespace bandvox

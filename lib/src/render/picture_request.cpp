@@ -170,7 +170,7 @@ bool needsFraming(const CameraOptions& camera) {
     return !(camera.eye && camera.lookat && isSized);
 }
 
-std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid) {
+std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid, const Progress& progress) {
     std::vector<openvdb::Vec3d> points;
     const auto add = [&](const openvdb::CoordBBox& voxels) {
         if (voxels.empty()) return;
@@ -184,6 +184,7 @@ std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid) {
         }
     };
     for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
+        progress.throwIfInterrupted();
         openvdb::CoordBBox box;
         leaf->evalActiveBoundingBox(box);
         add(box);
@@ -194,10 +195,10 @@ std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid) {
     return points;
 }
 
-std::vector<openvdb::Vec3d> pointsToFrame(const Scene& scene) {
+std::vector<openvdb::Vec3d> pointsToFrame(const Scene& scene, const Progress& progress) {
     std::vector<openvdb::Vec3d> points;
     for (const SceneObject& object : scene.objects) {
-        const std::vector<openvdb::Vec3d> active = activePoints(*object.grid);
+        const std::vector<openvdb::Vec3d> active = activePoints(*object.grid, progress);
         points.insert(points.end(), active.begin(), active.end());
     }
     return points;

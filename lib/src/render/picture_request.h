@@ -31,10 +31,12 @@ openvdb::BBoxd worldBox(const openvdb::FloatGrid& grid);
 bool needsFraming(const CameraOptions& camera);
 
 /// The corners of what is active, node by node, world units: points to frame in a picture.
-std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid);
+std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid,
+                                         const Progress& progress = silentProgress());
 
 /// The same of all objects of a scene.
-std::vector<openvdb::Vec3d> pointsToFrame(const Scene& scene);
+std::vector<openvdb::Vec3d> pointsToFrame(const Scene& scene,
+                                          const Progress& progress = silentProgress());
 
 /// Throws Error(ErrorKind::Result), for a grid whose values reach no more than `maximum`.
 [[noreturn]] void failEmpty(double maximum, double iso);

@@ -14,7 +14,7 @@ namespace bandvox {
 using openvdb::Vec3d;
 
 std::vector<CameraOptions> turntable(const Scene& scene, const PictureOptions& options,
-                                     int pictures) {
+                                     int pictures, Progress& progress) {
     constexpr int kMostPictures = 100000;
     if (pictures < 1 || pictures > kMostPictures) {
         throw Error(ErrorKind::Usage, "a turntable of " + std::to_string(pictures) +
@@ -23,7 +23,8 @@ std::vector<CameraOptions> turntable(const Scene& scene, const PictureOptions& o
     }
     requireValid(options);
     requireValid(scene);
-    const std::vector<Vec3d> points = pointsToFrame(scene);
+    const ProgressStage stage(progress, "framing", pictures);
+    const std::vector<Vec3d> points = pointsToFrame(scene, progress);
     openvdb::BBoxd box;
     for (const Vec3d& point : points) box.expand(point);
 
@@ -34,6 +35,7 @@ std::vector<CameraOptions> turntable(const Scene& scene, const PictureOptions& o
     std::vector<CameraOptions> cameras;
     double farthest = 0, widest = 0;
     for (int i = 0; i < pictures; ++i) {
+        progress.throwIfInterrupted();
         const auto turn = openvdb::math::rotation<openvdb::math::Mat3d>(
             axis, 2 * std::numbers::pi * i / pictures);
         CameraOptions camera = first;
@@ -44,6 +46,7 @@ std::vector<CameraOptions> turntable(const Scene& scene, const PictureOptions& o
         const Camera framed(camera, options.width, options.height, points);
         farthest = std::max(farthest, (framed.eye() - *first.lookat).length());
         widest = std::max(widest, options.width / framed.pixelsPerLength(1));
+        progress.advance();
     }
     if (farthest > 0) {
         for (CameraOptions& camera : cameras) {

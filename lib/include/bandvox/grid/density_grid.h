@@ -71,15 +71,17 @@ void setVoxelMetadata(openvdb::GridBase& grid, const std::string& source);
 std::string sourceOf(const openvdb::GridBase& grid);
 
 /// Integral of the density: the sum of all active values times a voxel's volume, world units³.
-/// Summed in one order, so the same for any number of threads.
-double densityIntegral(const openvdb::FloatGrid& grid);
+/// Summed in one order, so the same for any number of threads. Throws
+/// Error(ErrorKind::Interrupted).
+double densityIntegral(const openvdb::FloatGrid& grid, Progress& progress = silentProgress());
 
 /// Rounds every value to what 16 bits hold, which is what a file of such values gives back.
-/// Returns the largest change, density: up to 2^-12 below 1, 2^-11 above.
-double roundToHalf(openvdb::FloatGrid& grid);
+/// Returns the largest change, density: up to 2^-12 below 1, 2^-11 above. Throws
+/// Error(ErrorKind::Interrupted), with some values rounded.
+double roundToHalf(openvdb::FloatGrid& grid, Progress& progress = silentProgress());
 
 /// The same, and says so in the grid if that is a density.
-void roundAndRestate(openvdb::FloatGrid& grid);
+void roundAndRestate(openvdb::FloatGrid& grid, Progress& progress = silentProgress());
 
 /// How a VDB file is written.
 struct VdbWriteOptions {
@@ -88,20 +90,22 @@ struct VdbWriteOptions {
 };
 
 /// Writes grids to a .vdb file, whole or not at all.
-/// Throws Error(ErrorKind::Runtime) if it cannot be written.
+/// Throws Error(ErrorKind::Runtime) if it cannot be written; Error(ErrorKind::Interrupted).
 void writeVdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
-              const VdbWriteOptions& options = {});
+              const VdbWriteOptions& options = {}, Progress& progress = silentProgress());
 
 /// The same to a file that the caller commits.
 void writeVdb(AtomicFile& file, const openvdb::GridCPtrVec& grids,
-              const VdbWriteOptions& options = {});
+              const VdbWriteOptions& options = {}, Progress& progress = silentProgress());
 
 /// Reads all grids of a .vdb file. Throws Error(ErrorKind::Input) if it is missing, not a VDB,
-/// or damaged.
-openvdb::GridPtrVec readVdb(const std::filesystem::path& path);
+/// or damaged; Error(ErrorKind::Interrupted).
+openvdb::GridPtrVec readVdb(const std::filesystem::path& path,
+                            Progress& progress = silentProgress());
 
 /// The same from a stream that need not be seekable, as the standard input: all that it holds is
 /// taken into memory. Errors call it `name`.
-openvdb::GridPtrVec readVdb(std::istream& stream, const std::string& name);
+openvdb::GridPtrVec readVdb(std::istream& stream, const std::string& name,
+                            Progress& progress = silentProgress());
 
 }  // namespace bandvox

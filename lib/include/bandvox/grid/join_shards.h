@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bandvox/core/progress.h>
 #include <bandvox/core/shard.h>
 
 #include <openvdb/openvdb.h>
@@ -39,8 +40,9 @@ struct JoinedGrid {
 /// anew, and where shells overlap in any part the density is limited to [0, 1].
 ///
 /// Throws Error(ErrorKind::Input), which names what is missing, there twice, or different, unless
-/// they are all parts of one grid; `names` are what errors call them, as many.
+/// they are all parts of one grid; `names` are what errors call them, as many. Throws
+/// Error(ErrorKind::Interrupted), and then the parts are lost.
 JoinedGrid joinShards(const std::vector<openvdb::GridBase::Ptr>& parts,
-                      const std::vector<std::string>& names);
+                      const std::vector<std::string>& names, Progress& progress = silentProgress());
 
 }  // namespace bandvox
