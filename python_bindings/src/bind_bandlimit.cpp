@@ -8,6 +8,7 @@
 #include "grid_object.h"
 #include "mesh_object.h"
 #include "patches_object.h"
+#include "solid_density.h"
 #include "solid_mesh.h"
 
 #include <bandvox/bandlimit/field_to_density.h>
@@ -35,7 +36,7 @@ const std::vector<std::string> kRoutes{"auto", "exact", "sampled", "winding"};
 
 /// The keyword arguments of bandlimit.
 struct BandlimitRequest : DensityRequest {
-    std::string route;
+    std::string route = "auto";
     bool isUnion = true;
     std::optional<int> oversample;
     std::optional<double> base;
@@ -104,6 +105,15 @@ DensityResult densityOfMesh(const std::string& name, Mesh mesh, const BandlimitR
     return result;
 }
 
+DensityResult densityOfMeshFile(const std::filesystem::path& path, const BandlimitRequest& request,
+                                Progress& progress) {
+    MeshFile file = readMesh(path, progress);
+    DensityResult result =
+        densityOfMesh(path.filename().string(), std::move(file.mesh), request, progress);
+    addWarnings(file.warnings, result);
+    return result;
+}
+
 DensityResult densityOfPatches(const std::string& name, const PatchModel& model,
                                const BandlimitRequest& request, Progress& progress) {
     const PatchSolid solid = makePatchSolid(
@@ -139,11 +149,6 @@ py::object ofShape(const std::string& shape, const BandlimitRequest& request) {
     });
 }
 
-bool isPatchFile(const std::filesystem::path& path) {
-    if (!mayHoldPatches(path)) return false;
-    return !isMeshFile(path) || (std::filesystem::is_regular_file(path) && hasFreeForm(path));
-}
-
 void requireForPatches(const BandlimitRequest& request) {
     requireRoute(request, {"auto", "exact"}, "free-form surfaces");
     refuseOversample(request);
@@ -162,12 +167,8 @@ py::object ofFile(const std::filesystem::path& path, const BandlimitRequest& req
     }
     requireRoute(request, {"auto", "exact", "winding"}, "a mesh");
     refuseBase(request);
-    return madeDensity(request, [&](Progress& progress) {
-        MeshFile file = readMesh(path, progress);
-        DensityResult result = densityOfMesh(name, std::move(file.mesh), request, progress);
-        addWarnings(file.warnings, result);
-        return result;
-    });
+    return madeDensity(
+        request, [&](Progress& progress) { return densityOfMeshFile(path, request, progress); });
 }
 
 py::object ofMesh(const MeshObject& mesh, const BandlimitRequest& request) {
@@ -218,6 +219,21 @@ py::object bandlimit(const py::object& source, const BandlimitRequest& request) 
 
 }  // namespace
 
+bool isPatchFile(const std::filesystem::path& path) {
+    if (!mayHoldPatches(path)) return false;
+    return !isMeshFile(path) || (std::filesystem::is_regular_file(path) && hasFreeForm(path));
+}
+
+DensityResult densityOfSolid(const std::filesystem::path& path, const DensityOptions& options,
+                             Progress& progress) {
+    if (isShape(path.string())) {
+        return surfaceToDensity(*makeShapeBoundary(path.string()), options, progress);
+    }
+    BandlimitRequest request;
+    request.options = options;
+    return densityOfMeshFile(path, request, progress);
+}
+
 void bindBandlimit(py::module_& module) {
     const DensityOptions standard;
     module.def(
@@ -254,17 +270,18 @@ the grid can hold.
 
 source: a file of a mesh or of free-form surfaces, 'shape:NAME', a Mesh, (points, triangles),
 Patches, which are filled as they are, without triangles, or a function f(x, y, z) of arrays with
-bounds, its values 0 outside of them. resolution: voxels along the longest side; voxel_size:
-world units, instead. cutoff (cycles per voxel, 0.01 to 0.5) and order (1 to 64) of the filter
-exp(-(k/cutoff)**order). tolerance: error of the density allowed, 1e-6 to 0.05, 1e-4 if it is None;
-where the solid is sampled the error that is measured may be 0.05, a warning if it is more, unless
-this says how much. tile: side of the cube filtered at a time, voxels; 0 chooses. clamp: limit the
-density to 0 .. 1. iso: the value that is the surface; 'volume' takes the one that encloses the
-volume of the source. route: 'auto', 'exact', 'sampled' (shapes, functions) or 'winding' (meshes
-with openings). overlap: 'union' or 'sum' of a source's shells. oversample: samples along a voxel's
-side, or rows of the winding number. base: of free-form surfaces that are a height field, the solid
-between them and the plane z = base, world units. shard: (i, n) makes part i of n, from 1, which
-join_shards joins. threads: 0 for all. progress: called as progress(stage, fraction or None).
+bounds, its values 0 outside of them. resolution: voxels along the longest side, 1 to 2**20;
+voxel_size: world units, instead. cutoff (cycles per voxel, 0.01 to 0.5) and order (1 to 64) of the
+filter exp(-(k/cutoff)**order). tolerance: error of the density allowed, 1e-6 to 0.05, 1e-4 if it is
+None; where the solid is sampled the error that is measured may be 0.05, a warning if it is more,
+unless this says how much. tile: side of the cube filtered at a time, voxels, even, 512 at most; 0
+chooses. clamp: limit the density to 0 .. 1. iso: the value that is the surface; 'volume' takes the
+one that encloses the volume of the source. route: 'auto', 'exact', 'sampled' (shapes, functions) or
+'winding' (meshes with openings). overlap: 'union' or 'sum' of a source's shells. oversample:
+samples along a voxel's side, or rows of the winding number, 1 to 64. base: of free-form surfaces
+that are a height field, the solid between them and the plane z = base, world units. shard: (i, n)
+makes part i of n, from 1, which join_shards joins. threads: 0 for all. progress: called as
+progress(stage, fraction or None).
 
 What was measured is in the grid's metadata. Raises UsageError, InputError, ResultError,
 OutOfMemoryError; warns by BandvoxWarning.)");

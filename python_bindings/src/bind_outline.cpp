@@ -9,14 +9,18 @@
 #include "grid_object.h"
 #include "iso_argument.h"
 #include "patches_object.h"
+#include "solid_density.h"
 #include "solid_mesh.h"
 
 #include <bandvox/core/atomic_file.h>
 #include <bandvox/outline/patches_to_outline.h>
 #include <bandvox/outline/volumes_to_outline.h>
 #include <bandvox/outline/write_outline.h>
+#include <bandvox/source/read_mesh.h>
 #include <bandvox/source/read_patches.h>
+#include <bandvox/source/shapes.h>
 
+#include <choose_grid.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 #include <unistd.h>
@@ -155,13 +159,30 @@ void setPage(OutlineOptions& options, const py::object& asked,
                                       "; expected 0 or more, and less than half the page");
 }
 
-/// What is drawn: files of patches are read later, without the interpreter.
+/// What is drawn: files are read later, without the interpreter.
 struct DrawnSources {
     PatchModel patches;
     std::vector<OutlineVolume> volumes;
-    std::vector<std::filesystem::path> files;
-    IsoArgument iso;  // of the volumes
+    std::vector<std::filesystem::path> patchFiles, volumeFiles, solidFiles;
+    std::optional<std::string> grid;  // of the files of volumes
+    DensityOptions density;           // of the solids
+    IsoArgument iso;                  // of the volumes and solids
+    std::vector<std::string> warnings;
+
+    bool hasVolumes() const {
+        return !volumes.empty() || !volumeFiles.empty() || !solidFiles.empty();
+    }
 };
+
+void addFile(const std::filesystem::path& file, DrawnSources& sources) {
+    if (app::lowerCase(file.extension().string()) == ".vdb") {
+        sources.volumeFiles.push_back(file);
+    } else if (isShape(file.string()) || (isMeshFile(file) && !isPatchFile(file))) {
+        sources.solidFiles.push_back(file);
+    } else {
+        sources.patchFiles.push_back(file);
+    }
+}
 
 void addSource(const py::handle& source, DrawnSources& sources) {
     if (py::isinstance<PatchesObject>(source)) {
@@ -170,26 +191,49 @@ void addSource(const py::handle& source, DrawnSources& sources) {
         const auto& grid = source.cast<const FloatGridObject&>().grid;
         sources.volumes.push_back({grid, {}, grid->getName()});
     } else if (isPath(py::reinterpret_borrow<py::object>(source))) {
-        sources.files.push_back(source.cast<std::filesystem::path>());
+        addFile(source.cast<std::filesystem::path>(), sources);
     } else {
         throw Error(ErrorKind::Usage, std::string("found a ") + Py_TYPE(source.ptr())->tp_name +
-                                          "; expected a file of patches, bandvox.Patches, a "
+                                          "; expected a file, 'shape:NAME', bandvox.Patches, a "
                                           "bandvox.Grid, or a list of such");
     }
 }
 
-DrawnSources sourcesOf(const py::object& source, const IsoArgument& iso) {
-    DrawnSources sources;
-    sources.iso = iso;
+void addSources(const py::object& source, DrawnSources& sources) {
     if (py::isinstance<py::list>(source) || py::isinstance<py::tuple>(source)) {
         for (const py::handle part : source) addSource(part, sources);
     } else {
         addSource(source, sources);
     }
-    if (iso.isGiven() && sources.volumes.empty()) {
-        throw Error(ErrorKind::Usage, "iso is for grids, and there is none; expected one");
+    if (sources.iso.isGiven() && !sources.hasVolumes()) {
+        throw Error(ErrorKind::Usage,
+                    "iso is for grids and meshes, and there is none; expected one");
     }
-    return sources;
+    if (sources.grid && sources.volumeFiles.empty()) {
+        throw Error(ErrorKind::Usage, "grid is for .vdb files, and there is none; expected one");
+    }
+}
+
+void readSources(DrawnSources& sources, Progress& progress) {
+    const auto warnings = [&sources](const std::vector<std::string>& more) {
+        sources.warnings.insert(sources.warnings.end(), more.begin(), more.end());
+    };
+    for (const auto& file : sources.patchFiles) {
+        sources.patches.append(readPatches(file, progress));
+    }
+    warnings(sources.patches.warnings);
+    for (const auto& file : sources.volumeFiles) {
+        const auto grid =
+            app::chooseFloatGrid(readVdb(file, progress), sources.grid, "density", file.string());
+        sources.volumes.push_back({grid, {}, file.stem().string()});
+    }
+    for (const auto& file : sources.solidFiles) {
+        const DensityResult made = densityOfSolid(file, sources.density, progress);
+        warnings(made.warnings);
+        const std::string name = isShape(file.string()) ? file.string() : file.stem().string();
+        sources.volumes.push_back({made.grid, {}, name});
+    }
+    for (auto& volume : sources.volumes) volume.iso = isoFor(sources.iso, volume.grid, progress);
 }
 
 std::shared_ptr<DrawingObject> draw(DrawnSources sources, const OutlineOptions& options,
@@ -200,15 +244,11 @@ std::shared_ptr<DrawingObject> draw(DrawnSources sources, const OutlineOptions& 
     for (const std::string& kind : kinds) isKept[choiceOf(kind, lineKinds(), "kinds")] = true;
     auto drawing = std::make_shared<DrawingObject>();
     drawing->stroke = checked(stroke);
-    PatchModel& patches = sources.patches;
     drawing->outline = inBackground(progress, threads, [&](Progress& watched) {
-        for (const auto& file : sources.files) patches.append(readPatches(file, watched));
-        for (auto& volume : sources.volumes) {
-            volume.iso = isoFor(sources.iso, volume.grid, watched);
-        }
+        readSources(sources, watched);
         return sources.volumes.empty()
-                   ? patchesToOutline(patches, options, watched)
-                   : volumesToOutline(sources.volumes, patches, options, watched);
+                   ? patchesToOutline(sources.patches, options, watched)
+                   : volumesToOutline(sources.volumes, sources.patches, options, watched);
     });
     auto& paths = drawing->outline.paths;
     std::erase_if(
@@ -217,7 +257,7 @@ std::shared_ptr<DrawingObject> draw(DrawnSources sources, const OutlineOptions& 
         throw Error(ErrorKind::Result,
                     "the drawing is empty: it has no lines of these kinds; expected some");
     }
-    warn(patches.warnings);
+    warn(sources.warnings);
     warn(drawing->outline.warnings);
     return drawing;
 }
@@ -309,6 +349,7 @@ void bindOutline(py::module_& module) {
     bindDrawing(module);
     const OutlineOptions standard;
     const StrokeOptions stroke;
+    const DensityOptions density;
     module.def(
         "outline",
         [](const py::object& source, const py::object& page, const std::optional<double>& margin,
@@ -318,7 +359,8 @@ void bindOutline(py::module_& module) {
            const py::object& from, const py::object& camera, const py::object& cameraFile,
            const std::optional<double>& focal, const std::optional<double>& aperture,
            const std::optional<double>& fov, const std::optional<double>& frame,
-           const py::object& iso, const std::vector<double>& isophotes,
+           const std::optional<std::string>& grid, const py::object& iso, int resolution,
+           double voxelSize, double cutoff, double order, const std::vector<double>& isophotes,
            const std::optional<double>& suggestive, const std::array<double, 3>& light,
            const std::string& fill, const std::vector<double>& tones,
            std::vector<std::string> fillColors, double shade, int threads,
@@ -340,7 +382,14 @@ void bindOutline(py::module_& module) {
             options.camera = cameraOf(
                 {eye, lookat, up, from, camera, cameraFile, focal, aperture, fov, frame},
                 (options.height - 2 * options.margin) / (options.width - 2 * options.margin));
-            return draw(sourcesOf(source, isoArgumentOf(iso)), options, kinds,
+            DrawnSources sources;
+            sources.grid = grid;
+            sources.iso = isoArgumentOf(iso);
+            sources.density.resolution = resolution;
+            sources.density.voxelSize = voxelSize;
+            sources.density.filter = ExponentialFilter{order, cutoff};
+            addSources(source, sources);
+            return draw(std::move(sources), options, kinds,
                         {width, hiddenWidth, std::move(color), std::move(hiddenColor),
                          std::move(dash), std::move(fillColors), shade},
                         threads, progress);
@@ -356,28 +405,33 @@ void bindOutline(py::module_& module) {
         py::arg("from_") = py::none(), py::arg("camera") = py::none(),
         py::arg("camera_file") = py::none(), py::arg("focal") = py::none(),
         py::arg("aperture") = py::none(), py::arg("fov") = py::none(),
-        py::arg("frame") = py::none(), py::arg("iso") = py::none(),
+        py::arg("frame") = py::none(), py::arg("grid") = py::none(), py::arg("iso") = py::none(),
+        py::arg("resolution") = density.resolution, py::arg("voxel_size") = 0.0,
+        py::arg("cutoff") = density.filter.cutoff, py::arg("order") = density.filter.order,
         py::arg("isophotes") = standard.isophotes, py::arg("suggestive") = py::none(),
         py::arg("light") =
             std::array<double, 3>{standard.light[0], standard.light[1], standard.light[2]},
         py::arg("fill") = "none", py::arg("tones") = standard.tones,
         py::arg("fill_colors") = stroke.fillColors, py::arg("shade") = stroke.shade,
         py::arg("threads") = 0, py::arg("progress") = py::none(),
-        R"(Draws free-form surfaces and volumes as lines; returns a Drawing.
+        R"(Draws free-form surfaces, volumes and meshes as lines; returns a Drawing.
 
-source: Patches, a file of them (.bpt, .obj, .step, .iges or .brep), a Grid, or a list of such. iso: the value of
-grids that is the surface, as of to_mesh. isophotes: lines where the cosine of the angle between the normal and the
-direction to the light is one of
-these; light: along the camera's right, up and back. suggestive: of grids, draw suggestive contours of at
-least this strength, as in 20. fill: what is between lines, 'none', 'flat', a
-colour for each object, or 'toon', tones of it; tones: cosines of that angle at which they change,
-ascending; fill_colors: of the objects, one after the other, '#rrggbb'; shade: the darkest tone, as
-a part of the colour. page: width and height, millimetres, or 'A3', 'A4', 'A5' or 'letter', also
-with '-landscape'; margin: what stays free. tolerance: how far lines may be from the true ones, millimetres. crease_angle: patches
-that meet at more have a line between, degrees. kinds: which lines are drawn. hidden: keep those
-behind something. stroke, hidden_stroke: widths, millimetres; stroke_color, hidden_color: as in CSS;
-dash: of hidden lines. The camera's words are those of render. Raises ResultError if nothing is to
-be drawn.)");
+source: Patches, a file of them (.bpt, .obj, .step, .iges or .brep), a Grid, a .vdb file, a mesh
+file, 'shape:NAME', or a list of such. grid: the name of the grid of a .vdb file, 'density' or the
+only one of floats if it is None. iso: the value of grids that is the surface, as of to_mesh.
+resolution, voxel_size, cutoff, order: of the density that is made of a mesh or a shape, as of
+bandlimit; fewer voxels leave small detail away. isophotes: lines where the cosine of the angle
+between the normal and the direction to the light is one of these; light: along the camera's right,
+up and back. suggestive: of grids, draw suggestive contours of at least this strength, as in 20.
+fill: what is between lines, 'none', 'flat', a colour for each object, or 'toon', tones of it;
+tones: cosines of that angle at which they change, ascending; fill_colors: of the objects, one after
+the other, '#rrggbb'; shade: the darkest tone, as a part of the colour, 0 to 1. page: width and
+height, millimetres, or 'A3', 'A4', 'A5' or 'letter', also with '-landscape'; margin: what stays
+free. tolerance: how far lines may be from the true ones, millimetres. crease_angle: patches that
+meet at more have a line between, degrees, 0 to 180. kinds: which lines are drawn. hidden: keep
+those behind something. stroke, hidden_stroke: widths, millimetres; stroke_color, hidden_color: as
+in CSS; dash: of hidden lines. The camera's words are those of render. Raises ResultError if nothing
+is to be drawn.)");
 }
 
 }  // namespace bandvox::python

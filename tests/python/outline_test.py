@@ -171,10 +171,40 @@ def test_grids_are_drawn_by_their_contours():
     np.testing.assert_allclose(lengths, np.sqrt(0.75) * radii.mean(), atol=2e-3)
     both = bandvox.outline([ball, bandvox.Patches.read(TEAPOT)], up=(0, 0, 1))
     assert len({path.object for path in both.paths}) == 2
-    with pytest.raises(bandvox.UsageError, match="iso is for grids"):
+    with pytest.raises(bandvox.UsageError, match="iso is for grids and meshes"):
         bandvox.outline(TEAPOT, iso=0.5)
     with pytest.raises(bandvox.UsageError, match="found a int"):
         bandvox.outline([ball, 3])
+
+
+def test_files_of_volumes_and_meshes_are_drawn(cube, tmp_path):
+    view = {"from_": (1, -2, 1), "up": (0, 0, 1)}
+    ball = bandvox.bandlimit("shape:sphere", resolution=32)
+    other = bandvox.bandlimit("shape:torus", resolution=32)
+    other.name = "ring"
+    bandvox.write_vdb(tmp_path / "two.vdb", [other, ball])
+    mesh = bandvox.Mesh(*cube)
+    mesh.write(tmp_path / "cube.obj")
+    for source, options, grid, name in (
+        (tmp_path / "two.vdb", {}, ball, "two"),
+        (str(tmp_path / "two.vdb"), {"grid": "ring"}, other, "two"),
+        ("shape:sphere", {"resolution": 32}, ball, "shape:sphere"),
+        (tmp_path / "cube.obj", {"voxel_size": 0.1, "order": 3, "cutoff": 0.2},
+         bandvox.bandlimit(mesh, voxel_size=0.1, order=3, cutoff=0.2), "cube"),
+    ):
+        found, expected = bandvox.outline(source, **options, **view), bandvox.outline(grid, **view)
+        assert {path.object for path in found.paths} == {name}
+        assert len(found.paths) == len(expected.paths)
+        for ours, theirs in zip(found.paths, expected.paths):
+            np.testing.assert_array_equal(ours.points, theirs.points)
+    scene = bandvox.outline([tmp_path / "two.vdb", "shape:torus", TEAPOT], resolution=32, **view)
+    assert {"two", "shape:torus"} < {path.object for path in scene.paths}
+    with pytest.raises(bandvox.InputError, match="'ring'.*expected a float grid 'none'"):
+        bandvox.outline(tmp_path / "two.vdb", grid="none")
+    with pytest.raises(bandvox.UsageError, match="grid is for .vdb files"):
+        bandvox.outline(TEAPOT, grid="density")
+    with pytest.raises(bandvox.InputError):
+        bandvox.outline(tmp_path / "missing.vdb")
 
 
 def test_a_torus_has_suggestive_contours():

@@ -109,9 +109,8 @@ OUTLINE = {
     **of("outline", "page", "margin", "tolerance", "crease-angle", "kinds", "isophotes", "suggestive", "fill",
          "tones", "fill-colors", "shade", "light", "stroke", "stroke-color", "hidden-stroke",
          "hidden-color", "dash", "iso"),
-    **of("bandlimit", "resolution", "voxel-size", "cutoff", "order"),
+    **of("outline", "grid", "resolution", "voxel-size", "cutoff", "order"),
     "no-hidden": ("outline.hidden",),
-    "grid": "the grids of a file are a list",
 }
 FIT = {
     **{option: (f"fit.{option.replace('-', '_')}", f"fit_volume.{option.replace('-', '_')}")
