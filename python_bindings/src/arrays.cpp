@@ -17,7 +17,14 @@ namespace {
                 std::string(what) + ": found " + found + "; expected " + expected);
 }
 
-py::array arrayOf(const py::handle& object, const char* what, const std::string& expected) {
+bool isNumeric(const py::array& array) {
+    const char kind = array.dtype().kind();
+    return kind == 'f' || kind == 'i' || kind == 'u';
+}
+
+}  // namespace
+
+py::array anyArray(const py::handle& object, const char* what, const std::string& expected) {
     py::array array = py::array::ensure(object);
     if (!array) {
         PyErr_Clear();
@@ -25,13 +32,6 @@ py::array arrayOf(const py::handle& object, const char* what, const std::string&
     }
     return array;
 }
-
-bool isNumeric(const py::array& array) {
-    const char kind = array.dtype().kind();
-    return kind == 'f' || kind == 'i' || kind == 'u';
-}
-
-}  // namespace
 
 std::string described(const py::array& array) {
     std::string text = "an array of shape (";
@@ -44,14 +44,14 @@ std::string described(const py::array& array) {
 }
 
 py::array numericArray(const py::handle& object, const char* what, const std::string& expected) {
-    py::array given = arrayOf(object, what, expected);
+    py::array given = anyArray(object, what, expected);
     if (!isNumeric(given)) refuse(what, described(given), expected);
     return given;
 }
 
 std::vector<openvdb::Vec3d> vectorsOf(const py::handle& object, const char* what) {
     const std::string expected = "numbers of shape (n, 3)";
-    const py::array given = arrayOf(object, what, expected);
+    const py::array given = anyArray(object, what, expected);
     if (given.ndim() != 2 || given.shape(1) != 3 || !isNumeric(given)) {
         refuse(what, described(given), expected);
     }
@@ -66,7 +66,7 @@ std::vector<openvdb::Vec3d> vectorsOf(const py::handle& object, const char* what
 
 std::vector<openvdb::Vec3I> indicesOf(const py::handle& object, const char* what) {
     const std::string expected = "whole numbers from 0 of shape (n, 3)";
-    const py::array given = arrayOf(object, what, expected);
+    const py::array given = anyArray(object, what, expected);
     const char kind = given.dtype().kind();
     if (given.ndim() != 2 || given.shape(1) != 3 || (kind != 'i' && kind != 'u')) {
         refuse(what, described(given), expected);
@@ -88,7 +88,7 @@ std::vector<openvdb::Vec3I> indicesOf(const py::handle& object, const char* what
 
 openvdb::Vec3d vectorOf(const py::handle& object, const char* what) {
     const std::string expected = "three numbers";
-    const py::array given = arrayOf(object, what, expected);
+    const py::array given = anyArray(object, what, expected);
     if (!isNumeric(given) || given.ndim() > 1 || (given.ndim() == 1 && given.size() != 3)) {
         refuse(what, described(given), expected);
     }

@@ -13,6 +13,11 @@ namespace bandvox::python {
 /// The shape and the type of an array, as in "(3, 4) of float64".
 std::string described(const pybind11::array& array);
 
+/// What can be made an array, as lists. Throws Error(ErrorKind::Usage) that says what was found and
+/// `expected`.
+pybind11::array anyArray(const pybind11::handle& object, const char* what,
+                         const std::string& expected);
+
 /// An array of numbers, of any type and shape. Throws Error(ErrorKind::Usage) that says what was
 /// found and `expected`.
 pybind11::array numericArray(const pybind11::handle& object, const char* what,

@@ -1,7 +1,9 @@
 // Grids: to and from arrays and pickles.
 
 #include "arrays.h"
+#include "background.h"
 #include "grid_object.h"
+#include "text.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/grid/density_grid.h>
@@ -11,6 +13,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <type_traits>
@@ -38,19 +41,21 @@ py::object valueOf(const openvdb::Metadata& metadata) {
         const auto* found = dynamic_cast<const openvdb::TypedMetadata<Value>*>(&metadata);
         return found ? py::cast(found->value()) : py::object();
     };
-    if (auto value = typed(std::string())) return value;
+    if (metadata.typeName() == openvdb::StringMetadata::staticTypeName()) {
+        return textOf(metadata.str());
+    }
     if (auto value = typed(bool())) return value;
     if (auto value = typed(double())) return value;
     if (auto value = typed(float())) return value;
     if (auto value = typed(openvdb::Int32())) return value;
     if (auto value = typed(openvdb::Int64())) return value;
-    return py::cast(metadata.str());
+    return textOf(metadata.str());
 }
 
 py::dict metadataOf(const openvdb::GridBase& grid) {
     py::dict all;
     for (auto it = grid.beginMeta(); it != grid.endMeta(); ++it) {
-        all[py::cast(it->first)] = valueOf(*it->second);
+        all[textOf(it->first)] = valueOf(*it->second);
     }
     return all;
 }
@@ -63,7 +68,7 @@ Coord coordOf(const py::handle& object, const char* what) {
         if (place[axis] != std::floor(place[axis]) || std::abs(place[axis]) > kFarthest) {
             throw Error(ErrorKind::Usage, std::string(what) + ": found " +
                                               std::to_string(place[axis]) +
-                                              "; expected whole numbers of voxels");
+                                              "; expected whole numbers of voxels, 2**30 at most");
         }
         result[axis] = static_cast<int>(place[axis]);
     }
@@ -126,9 +131,25 @@ py::tuple toArray(const GridObject<Grid>& object, const py::object& bounds) {
     return py::make_tuple(array, tupleOf(box.min()));
 }
 
+/// Throws Error(ErrorKind::Usage), which says where, if there is one that is not a number.
+void requireNumbers(const py::array_t<float>& values) {
+    const float* first = values.data();
+    const float* const end = first + values.size();
+    const float* const found = std::find_if(first, end, [](float x) { return std::isnan(x); });
+    if (found == end) return;
+    auto left = static_cast<py::ssize_t>(found - first);
+    std::string place;
+    for (py::ssize_t axis = values.ndim() - 1; axis >= 0; --axis) {
+        place = std::to_string(left % values.shape(axis)) + (place.empty() ? "" : ", ") + place;
+        left /= values.shape(axis);
+    }
+    throw Error(ErrorKind::Usage, "array: found nan at [" + place +
+                                      "]; expected numbers, as numpy.nan_to_num makes them");
+}
+
 /// A grid of an array: what differs from the background by no more than the tolerance is not kept.
 template <typename Grid>
-std::shared_ptr<GridObject<Grid>> fromArray(const py::array& given, const py::object& origin,
+std::shared_ptr<GridObject<Grid>> fromArray(const py::object& array, const py::object& origin,
                                             const py::object& voxelSize,
                                             const py::object& transform, double background,
                                             double tolerance, const std::string& name) {
@@ -137,13 +158,21 @@ std::shared_ptr<GridObject<Grid>> fromArray(const py::array& given, const py::ob
     object->grid = Grid::create(Value(static_cast<NumberOf<Grid>>(background)));
     constexpr bool isVector = kIsVector<Grid>;
     const py::ssize_t axes = isVector ? 4 : 3;
+    const std::string expected =
+        isVector ? "numbers of shape (x, y, z, 3)" : "numbers of shape (x, y, z)";
+    const py::array given = anyArray(array, "array", expected);
     const char kind = given.dtype().kind();
     const bool isNumeric = kind == 'f' || kind == 'i' || kind == 'u' || kind == 'b';
     if (given.ndim() != axes || (isVector && given.shape(3) != 3) || !isNumeric ||
         given.size() == 0) {
-        throw Error(ErrorKind::Usage, "array: found " + described(given) +
-                                          "; expected numbers of shape " +
-                                          (isVector ? "(x, y, z, 3)" : "(x, y, z)"));
+        throw Error(ErrorKind::Usage,
+                    "array: found " + described(given) + "; expected " + expected);
+    }
+    if (!(tolerance >= 0) || !std::isfinite(background)) {
+        throw Error(ErrorKind::Usage, "found the tolerance " + std::to_string(tolerance) +
+                                          " and the background " + std::to_string(background) +
+                                          "; expected a tolerance of 0 or more, and a background "
+                                          "that is finite");
     }
     if (!voxelSize.is_none() && !transform.is_none()) {
         throw Error(ErrorKind::Usage, "voxel_size and transform exclude each other");
@@ -161,11 +190,12 @@ std::shared_ptr<GridObject<Grid>> fromArray(const py::array& given, const py::ob
         grid.setTransform(openvdb::math::Transform::createLinearTransform(transformOf(transform)));
     } else if (!voxelSize.is_none()) {
         const openvdb::Vec3d side = vectorOf(voxelSize, "voxel_size");
-        if (!(side[0] > 0 && side[1] > 0 && side[2] > 0)) {
-            throw Error(ErrorKind::Usage, "voxel_size: expected numbers above 0");
+        if (!(side[0] > 0 && side[1] > 0 && side[2] > 0 && std::isfinite(side.length()))) {
+            throw Error(ErrorKind::Usage, "voxel_size: expected finite numbers above 0");
         }
         grid.transform().postScale(side);
     }
+    if constexpr (!kIsMask<Grid>) requireNumbers(values);
     auto* data = reinterpret_cast<Value*>(const_cast<NumberOf<Grid>*>(values.data()));
     const py::gil_scoped_release unlocked;
     openvdb::tools::Dense<Value, openvdb::tools::LayoutZYX> dense(box, data);
@@ -237,8 +267,9 @@ void bindGrid(py::module_& module, const char* name, const char* doc) {
                     R"(A sparse grid of a dense array, indexed [x, y, z].
 
 origin: index of the array's first voxel, (0, 0, 0) by default. voxel_size: world units, one number
-or three; or transform: (4, 4), world = transform @ (x, y, z, 1). Values that differ from
-background by no more than tolerance are not kept. C-ordered float32 is read where it lies.)")
+or three; or transform: (4, 4), world = transform @ (x, y, z, 1). Values that differ from background
+by no more than tolerance, 0 or more, are not kept. C-ordered float32 is read where it lies. Raises
+UsageError for arrays of other shapes or types, and for nan.)")
         .def("to_array", &toArray<Grid>, py::arg("bounds") = py::none(),
              R"(The values of a box as a dense array, and the index of its first voxel.
 
@@ -258,7 +289,7 @@ float32 or of a mask bool, indexed [x, y, z]; (x, y, z)). Raises OutOfMemoryErro
             },
             "'fog volume', 'level set', 'staggered' or 'unknown', as OpenVDB has it.")
         .def_property(
-            "name", [](const Object& self) { return self.grid->getName(); },
+            "name", [](const Object& self) { return textOf(self.grid->getName()); },
             [](const Object& self, const std::string& name_) { self.grid->setName(name_); })
         .def_property_readonly(
             "transform", [](const Object& self) { return matrixOf(rowsOf(*self.grid)); },
@@ -294,19 +325,23 @@ float32 or of a mask bool, indexed [x, y, z]; (x, y, z)). Raises OutOfMemoryErro
         .def(
             "write",
             [](const Object& self, const std::filesystem::path& path, bool isHalf,
-               const std::string& compression) {
-                writeGridFiles(path, {self.grid}, vdbOptions(isHalf, compression));
+               const std::string& compression, int threads, const py::object& progress) {
+                const VdbWriteOptions options = vdbOptions(isHalf, compression);
+                runInBackground(
+                    [&](Progress& watched) { writeGridFiles(path, {self.grid}, options, watched); },
+                    progress, threads);
             },
             py::arg("path"), py::kw_only(), py::arg("half") = false,
-            py::arg("compression") = "blosc",
+            py::arg("compression") = "blosc", py::arg("threads") = 0,
+            py::arg("progress") = py::none(),
             "Writes a .vdb file with this grid alone, as write_vdb does.")
         .def("__repr__",
              [name](const Object& self) {
                  const Coord size = self.grid->evalActiveVoxelBoundingBox().dim();
-                 return std::string("<bandvox.") + name + " '" + self.grid->getName() +
-                        "': " + std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
-                        std::to_string(size[2]) + " voxels, " +
-                        std::to_string(self.grid->activeVoxelCount()) + " active>";
+                 return textOf(std::string("<bandvox.") + name + " '" + self.grid->getName() +
+                               "': " + std::to_string(size[0]) + " x " + std::to_string(size[1]) +
+                               " x " + std::to_string(size[2]) + " voxels, " +
+                               std::to_string(self.grid->activeVoxelCount()) + " active>");
              })
         .def(py::pickle([](const Object& self) { return bytesOf(self.grid); },
                         [](const py::bytes& bytes) {

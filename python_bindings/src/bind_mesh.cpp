@@ -50,6 +50,23 @@ std::shared_ptr<MeshObject> meshOfArrays(const py::handle& points, const py::han
     return mesh;
 }
 
+py::tuple stateOf(const py::object& self) {
+    return py::make_tuple(self.attr("points"), self.attr("triangles"), self.attr("normals"),
+                          self.attr("colors"), self.attr("name"));
+}
+
+std::shared_ptr<MeshObject> meshOfState(const py::tuple& state) {
+    if (state.size() != 5) throw Error(ErrorKind::Input, "the pickle holds no mesh");
+    auto mesh = meshOfArrays(state[0], state[1], state[3]);
+    if (!state[2].is_none()) {
+        for (const Vec3d& normal : vectorsOf(state[2], "normals")) {
+            mesh->surface.normals.emplace_back(normal);
+        }
+    }
+    mesh->name = state[4].cast<std::string>();
+    return mesh;
+}
+
 std::shared_ptr<MeshObject> readMeshObject(const std::filesystem::path& path) {
     MeshFile file =
         inBackground(py::none(), 0, [&](Progress& progress) { return readMesh(path, progress); });
@@ -129,6 +146,7 @@ of points, counter-clockwise from outside; colors of shape (n, 3), linear light,
         .def_readonly("name", &MeshObject::name, "The file's name, or 'mesh'.")
         .def("write", &writeMeshObject, py::arg("path"),
              "Writes .obj, .ply, .stl, .gltf or .glb, whole or not at all.")
+        .def(py::pickle(&stateOf, &meshOfState))
         .def("__repr__", [](const MeshObject& mesh) {
             return "<bandvox.Mesh '" + mesh.name +
                    "': " + std::to_string(mesh.surface.mesh.points.size()) + " points, " +

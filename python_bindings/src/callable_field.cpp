@@ -5,6 +5,7 @@
 #include <bandvox/core/error.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace bandvox::python {
 
@@ -20,6 +21,13 @@ openvdb::BBoxd boundsOfFunction(const py::object& bounds) {
     if (corners.size() != 2) {
         throw Error(ErrorKind::Usage, "bounds: found " + std::to_string(corners.size()) +
                                           " places; expected the lowest and the highest");
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = corners[0][axis], high = corners[1][axis];
+        if (low < high && std::isfinite(high - low)) continue;
+        throw Error(ErrorKind::Usage, "bounds: found " + std::to_string(low) + " to " +
+                                          std::to_string(high) +
+                                          "; expected the lowest place and then the highest");
     }
     return {corners[0], corners[1]};
 }
@@ -44,20 +52,26 @@ void CallableField::sampleRow(const openvdb::Vec3d& start, const openvdb::Vec3d&
             }
             places[axis] = ownedArray(std::move(along), {count});
         }
-        const py::object found = mFunction(places[0], places[1], places[2]);
-        const auto array = py::array_t<float, py::array::forcecast>::ensure(found);
-        if (!array) throw py::error_already_set();
-        if (array.ndim() == 0) {
-            std::fill(values.begin(), values.end(), *array.data());
-            return;
+        const std::string expected =
+            "one number, or numbers of shape (" + std::to_string(count) + ",)";
+        const py::array found =
+            anyArray(mFunction(places[0], places[1], places[2]), "the function's values", expected);
+        const bool isNumber = std::string("fiub").find(found.dtype().kind()) != std::string::npos;
+        const bool isOne = found.ndim() == 0;
+        if (!isNumber || (!isOne && (found.ndim() != 1 || found.shape(0) != count))) {
+            throw Error(ErrorKind::Usage, "the function's values: found " + described(found) +
+                                              "; expected " + expected);
         }
-        if (array.ndim() != 1 || array.shape(0) != count) {
-            throw Error(ErrorKind::Usage, "the function gave " + described(array) +
-                                              "; expected one of shape (" + std::to_string(count) +
-                                              ",)");
+        const auto numbers = py::array_t<float, py::array::forcecast>::ensure(found);
+        for (py::ssize_t i = 0; i < count; ++i) {
+            const float value = isOne ? *numbers.data() : numbers.at(i);
+            if (!std::isfinite(value)) {
+                throw Error(ErrorKind::Usage, "the function's values: found " +
+                                                  std::to_string(value) +
+                                                  "; expected finite numbers");
+            }
+            values[static_cast<std::size_t>(i)] = value;
         }
-        const auto numbers = array.unchecked<1>();
-        for (py::ssize_t i = 0; i < count; ++i) values[static_cast<std::size_t>(i)] = numbers(i);
     } catch (...) {
         // An exception of Python may only be touched with the lock, so the first one stays here.
         if (!mHasFailed) {

@@ -1,5 +1,7 @@
 #include "errors.h"
 
+#include "text.h"
+
 #include <bandvox/core/error.h>
 
 #include <exception>
@@ -55,7 +57,7 @@ void translate(std::exception_ptr pointer) {
     try {
         std::rethrow_exception(pointer);
     } catch (const Error& error) {
-        PyErr_SetString(typeOf(error.kind()), error.what());
+        PyErr_SetObject(typeOf(error.kind()), textOf(error.what()).ptr());
     }
 }
 
@@ -79,7 +81,8 @@ void bindErrors(py::module_& module) {
 
 void warn(const std::vector<std::string>& warnings) {
     for (const std::string& text : warnings) {
-        if (PyErr_WarnEx(sWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+        const auto readable = textOf(text).cast<std::string>();
+        if (PyErr_WarnEx(sWarning, readable.c_str(), 1) != 0) throw py::error_already_set();
     }
 }
 

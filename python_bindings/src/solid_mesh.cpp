@@ -34,7 +34,8 @@ std::shared_ptr<const MeshObject> meshOf(const py::object& source) {
 }
 
 bool isPath(const py::object& source) {
-    return py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__");
+    return py::isinstance<py::str>(source) || py::isinstance<py::bytes>(source) ||
+           py::hasattr(source, "__fspath__");
 }
 
 }  // namespace bandvox::python

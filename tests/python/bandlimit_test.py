@@ -1,5 +1,6 @@
 """bandlimit takes files, arrays, meshes and functions, and says what is wrong with others."""
 
+import os
 import threading
 import warnings
 
@@ -52,11 +53,41 @@ def test_what_a_function_raises_comes_through():
 
     with pytest.raises(LookupError, match="no such place"):
         bandvox.bandlimit(fails, voxel_size=0.2, bounds=((-1, -1, -1), (1, 1, 1)))
-    with pytest.raises(bandvox.UsageError, match="expected one of shape"):
-        bandvox.bandlimit(lambda x, y, z: np.zeros(3), voxel_size=0.2,
-                          bounds=((-1, -1, -1), (1, 1, 1)))
     with pytest.raises(bandvox.UsageError, match="bounds"):
         bandvox.bandlimit(fails, voxel_size=0.2)
+
+
+@pytest.mark.parametrize("given, words", [
+    (np.zeros(3), r"shape \(3,\).*expected one number, or numbers of shape"),
+    ("a", "<U1.*expected one number"), (None, "object.*expected one number"),
+    (1j, "complex"), (np.nan, "found nan.*finite"), (-np.inf, "found -inf")])
+def test_a_function_has_to_give_numbers(given, words):
+    with pytest.raises(bandvox.UsageError, match=words):
+        bandvox.bandlimit(lambda x, y, z: given, voxel_size=0.2, bounds=((-1, -1, -1), (1, 1, 1)))
+
+
+@pytest.mark.parametrize("bounds", [((1, 1, 1), (-1, -1, -1)), ((0, 0, 0), (1, 1, 0)),
+                                    ((np.nan, 0, 0), (1, 1, 1)), ((0, 0, 0), (1, np.inf, 1))])
+def test_bounds_have_to_hold_something(bounds):
+    with pytest.raises(bandvox.UsageError, match="expected the lowest place"):
+        bandvox.bandlimit(lambda x, y, z: 1, voxel_size=0.2, bounds=bounds)
+
+
+def test_names_of_files_are_text_bytes_or_paths(cube, tmp_path):
+    folder = tmp_path / "Größe ☃"
+    folder.mkdir()
+    bandvox.Mesh(*cube).write(folder / "würfel.ply")
+    for path in (folder / "würfel.ply", str(folder / "würfel.ply"), os.fsencode(folder / "würfel.ply")):
+        grid = bandvox.bandlimit(path, voxel_size=0.25)
+        assert grid.metadata["bandvox_source"] == "würfel.ply"
+        assert bandvox.info(path)["file"] == str(folder / "würfel.ply")
+
+
+def test_errors_name_files_that_have_no_name_in_utf8(tmp_path):
+    with pytest.raises(bandvox.InputError, match=r"gr\\xf6n\.obj"):
+        bandvox.bandlimit(os.fsdecode(os.fsencode(tmp_path) + b"/gr\xf6n.obj"))
+    with pytest.raises(bandvox.InputError, match=r"gr\\xf6n\.vdb"):
+        bandvox.read_vdb(os.fsencode(tmp_path) + b"/gr\xf6n.vdb")
 
 
 def test_openings_are_a_warning(cube):

@@ -107,6 +107,61 @@ def test_pickles_and_copies(torus):
     assert torus.name == "density"
 
 
+def test_meshes_are_pickled(torus):
+    mesh = bandvox.to_mesh(torus)
+    painted = bandvox.Mesh(mesh.points, mesh.triangles, colors=np.abs(mesh.points) % 1)
+    for one in (mesh, painted):
+        back = pickle.loads(pickle.dumps(one))
+        assert back.name == one.name
+        for name in ("points", "triangles", "normals", "colors"):
+            ours, theirs = getattr(back, name), getattr(one, name)
+            assert (ours is None) == (theirs is None), name
+            if ours is not None:
+                np.testing.assert_array_equal(ours, theirs)
+
+
+def test_names_of_other_programs_can_be_read(torus, tmp_path):
+    path = tmp_path / "torus.vdb"
+    named = torus.copy()
+    named.name = "grXn"
+    named.write(path)
+    path.write_bytes(path.read_bytes().replace(b"grXn", b"gr\xf6n"))
+    [grid] = bandvox.read_vdb(path)
+    assert grid.name == grid.metadata["name"] == r"gr\xf6n"
+    assert r"gr\xf6n" in repr(grid)
+
+
+def test_a_file_of_grids_has_its_ending(torus, tmp_path):
+    for write in (torus.write, lambda path: bandvox.write_vdb(path, [torus])):
+        with pytest.raises(bandvox.UsageError, match="torus.png.*expected a .vdb"):
+            write(tmp_path / "torus.png")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_arrays_are_of_any_kind_of_number():
+    array = np.arange(60).reshape(3, 4, 5)
+    for other in (array.tolist(), array.astype(">f8"), np.asfortranarray(array), array.astype("u1"),
+                  np.repeat(array, 2, axis=2)[..., ::2]):
+        np.testing.assert_array_equal(bandvox.Grid.from_array(other, background=-1).to_array()[0], array)
+    array.flags.writeable = False
+    np.testing.assert_array_equal(bandvox.Grid.from_array(array, background=-1).to_array()[0], array)
+
+
+def test_what_is_no_number_is_named():
+    hole = sample()
+    hole[1, 2, 3] = np.nan
+    with pytest.raises(bandvox.UsageError, match=r"found nan at \[1, 2, 3\]"):
+        bandvox.Grid.from_array(hole)
+    with pytest.raises(bandvox.UsageError, match=r"found nan at \[1, 0, 0, 2\]"):
+        bandvox.VectorGrid.from_array([[[[1, 1, 1]]], [[[1, 1, np.nan]]]])
+    for wrong in ({"tolerance": np.nan}, {"tolerance": -1}, {"background": np.nan},
+                  {"voxel_size": np.inf}):
+        with pytest.raises(bandvox.UsageError, match="expected"):
+            bandvox.Grid.from_array(sample(), **wrong)
+    with pytest.raises(bandvox.UsageError, match="<U1"):
+        bandvox.Grid.from_array("a")
+
+
 def test_wrong_arrays_are_named(torus):
     for array, words in ((np.zeros((3, 3)), r"\(3, 3\) of float64"),
                          (np.zeros((3, 3, 0)), r"\(3, 3, 0\)"),
