@@ -123,7 +123,8 @@ openvdb::FloatGrid::Ptr chooseFloatGrid(const openvdb::GridPtrVec& grids,
         only = floats;
     }
     if (only) return only;
-    fail(grids, file, "a float grid '" + standard + "', or one float grid only, or the name of one (grid)");
+    fail(grids, file,
+         "a float grid '" + standard + "', or one float grid only, or the name of one (grid)");
 }
 
 openvdb::Vec3SGrid::Ptr chooseColorGrid(const openvdb::GridPtrVec& grids,

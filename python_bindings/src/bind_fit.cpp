@@ -97,9 +97,10 @@ void bindFit(py::module_& module) {
 places: (n, 2), world units, and values: (n,) or (n, columns); or a .csv, .xyz, .txt or .npy file
 alone, and columns: names, or numbers from 1, of x, y and values. rectangle: x0, y0, x1, y1, by
 default that of the places. tolerance: how far it may be off at a point, in parts of the values'
-range, 0 to 1; 1e-12 if it is None. smooth: the values have errors of this standard deviation.
-max_level: at most 2**max_level cells along the longer side, 1 to 13. levels: (first, last) to sum
-up. tension: stiff within 1 / tension, and like a membrane farther off.
+range, 0 to 1; 1e-12 if it is None. smooth: the values have errors of this standard deviation, world
+units; 0: none. max_level: at most 2**max_level cells along the longer side, 1 to 13. levels:
+(first, last) to sum up. tension: stiff within 1 / tension, in units of the root of the rectangle's
+area, and like a membrane farther off; 0.01 or more, and chosen if it is None.
 
 Raises ResultError if a tolerance that is given is not reached, or the surface is off by more than
 0.01 without a max_level.)");

@@ -248,7 +248,8 @@ void bindFitVolume(py::module_& module) {
 
 places: (n, 3), world units, and values: (n,) or (n, columns); or a file alone, and columns: names,
 or numbers from 1, of x, y, z and values. reach: how far from the places there are values, world
-units. The others are as of fit; max_level is 1 to 16, and tension in units of the longest side.)");
+units; chosen if it is None. max_level: at most 2**max_level cells along the longest side, 1 to 16.
+tension: as of fit, but in units of the longest side, 0.01 to 10000. The others are as of fit.)");
 }
 
 }  // namespace bandvox::python

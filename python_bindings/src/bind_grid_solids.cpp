@@ -199,8 +199,8 @@ void bindGridSolids(py::module_& module) {
 
 iso: by default what the grid says, else 0.5, and 0 of a level set; 'volume' takes the value that
 encloses the volume of the source. adaptivity: 0 to 1, leaves points out where the surface hardly
-bends. tolerance: distance of points from the surface, voxels. colors: a VectorGrid that the mesh
-takes its colours from.)");
+bends. tolerance: distance of points from the surface, voxels, 1e-5 to 0.1. colors: a VectorGrid
+that the mesh takes its colours from.)");
     const double band = LevelSetOptions().halfWidth;
     module.def(
         "to_level_set",
@@ -211,9 +211,8 @@ takes its colours from.)");
         },
         py::arg("grid"), py::kw_only(), py::arg("iso") = py::none(), py::arg("band") = band,
         py::arg("threads") = 0, py::arg("progress") = py::none(),
-        "Signed distances from the surface, world units, in a band of this half width, voxels. "
-        "iso: "
-        "as of to_mesh.");
+        "Signed distances from the surface, world units, in a band around it. iso: as of to_mesh. "
+        "band: half of its width, voxels, 1 to 100.");
     module.def(
         "to_fog",
         [](const py::object& grid, const py::object& iso, double width, int threads,
@@ -222,8 +221,8 @@ takes its colours from.)");
         },
         py::arg("grid"), py::kw_only(), py::arg("iso") = py::none(), py::arg("band") = band,
         py::arg("threads") = 0, py::arg("progress") = py::none(),
-        "Fog as OpenVDB makes it of distances: 0 on the surface, 1 inside from a depth of band, "
-        "voxels, on. iso: as of to_mesh.");
+        "Fog as OpenVDB makes it of distances: 0 on the surface, 1 inside from a depth of band on. "
+        "iso, band: as of to_level_set.");
     module.def("iso_of_volume", &isoForVolume, py::arg("grid"), py::arg("volume"), py::kw_only(),
                py::arg("progress") = py::none(),
                "The iso-value whose surface encloses a volume (world units cubed), and what it "

@@ -101,7 +101,9 @@ void bindReconstruction(py::module_& module) {
                                      R"(The continuous density that a grid's voxels stand for.
 
 Reconstruction(grid, tolerance=1.5e-5, cache_bytes=2**29): by its own filter if the grid is a density
-of this library, by a cubic B-spline otherwise. Safe to use from many threads.)")
+of this library, by a cubic B-spline otherwise. tolerance: error of the density allowed, and of its
+gradient relative to a flat face's, 1e-6 to 0.1. cache_bytes: memory for what has been read. Safe to
+use from many threads.)")
         .def(py::init([](const py::object& grid, double tolerance, std::size_t cacheBytes) {
                  return std::make_unique<ReconstructionObject>(floatGridOf(grid), tolerance,
                                                                cacheBytes);
