@@ -128,9 +128,9 @@ def render(
     colours: linear; without a background it is transparent.
 
     shadows: objects stop the light of lamps. gather: directions in which a matt surface looks for light
-    from around, no farther than gather_distance, world units, 0: any; bounces: how often it goes on from
-    surface to surface. depth: how often a line of sight is mirrored and refracted. volume_method:
-    'steps' or 'tracking'; step: voxels from place to place, 0.05 to 16. shading: 'spectral', or an older method.
+    from around; gather_distance: how far at most, world units, 0: any; bounces: how often it goes on from
+    surface to surface. depth: how often a line of sight is mirrored and refracted. volume_method: 'steps'
+    or 'tracking'; step: voxels from place to place, 0.05 to 16. shading: 'spectral', or an older method.
 
     read_error: of what is read between the nodes, 1e-6 to 0.1; cache_size: memory for it, MB, 0 chooses.
     seed: of all that is random. preview: called now and then with the picture as far as it is, (height,

@@ -445,7 +445,7 @@ TEST_F(DensityGridFile, IsReadAndWrittenUntilTheWorkIsToStop) {
 }
 
 TEST(RoundToHalf, StopsWhenInterrupted) {
-    expectStopsMidway(20, [](Progress& progress) {
+    expectStopsMidway(5, [](Progress& progress) {
         const auto grid = sampleGrid();
         roundAndRestate(*grid, progress);
         densityIntegral(*grid, progress);

@@ -113,7 +113,7 @@ def said_of(path, argument):
     others say to which it refers."""
     text = " ".join(docstring_of(path).split("\n\n", 1)[-1].split())
     names = "|".join(arguments_of(path))
-    parts = re.split(rf"\b({names})(?=:|,| and | \()", text)
+    parts = re.split(rf"\b({names})(?=:| \(|(?:,| and|, and) (?:{names})\b)", text)
     told, together = {}, []
     for name, said in zip(parts[1::2], parts[2::2]):
         together.append(name)
