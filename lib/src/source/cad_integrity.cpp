@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -24,8 +23,8 @@ bool isNoNumber(std::string_view word) {
     return lower == "nan" || lower == "inf" || lower == "infinity";
 }
 
-// As for places in other files: Open CASCADE takes powers of them.
-constexpr double kFarthest = std::numeric_limits<float>::max();
+// Lengths, in any unit, beyond which Open CASCADE crashes, or takes for good: it works to 1e-7.
+constexpr double kFarthest = 1e12;
 
 // Reads the number at the beginning of a text, if there is one that is too large; returns how long
 // it is, 0 if there is none. Fortran's exponents have a D.
@@ -46,7 +45,7 @@ std::size_t requireNumberInRange(const FileContents& file, std::string_view text
                          number.find('-', sign + 1) != std::string_view::npos;
     const bool isFar = status == std::errc::result_out_of_range || !(std::abs(value) <= kFarthest);
     if (isFar && !isSmall) {
-        file.fail("holds the number " + std::string(number) + "; expected none beyond 3e38");
+        file.fail("holds the number " + std::string(number) + "; expected none beyond 1e12");
     }
     return length;
 }
@@ -149,7 +148,8 @@ void requireSoundBrep(const FileContents& file) {
     }
 }
 
-// The parameters of an IGES file are what stands in columns 1 to 64 of lines with P in column 73.
+// The parameters of an IGES file are what stands in columns 1 to 64 of lines with P in column 73; Open
+// CASCADE also takes damaged lines for such.
 void requireIgesNumbersInRange(const FileContents& file) {
     constexpr std::size_t kColumns = 64, kLetter = 72;
     const std::string_view bytes(file.bytes);
@@ -157,7 +157,10 @@ void requireIgesNumbersInRange(const FileContents& file) {
     for (std::size_t begin = 0; begin < bytes.size();) {
         const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
         const std::string_view line = bytes.substr(begin, end - begin);
-        if (line.size() > kLetter && line[kLetter] == 'P') text += line.substr(0, kColumns);
+        const char letter = line.size() > kLetter ? line[kLetter] : 'P';
+        if (std::string_view("SGDT").find(letter) == std::string_view::npos) {
+            text += line.substr(0, kColumns);
+        }
         begin = end + 1;
     }
     for (std::size_t i = 0; i < text.size();) {
