@@ -148,8 +148,8 @@ void requireSoundBrep(const FileContents& file) {
     }
 }
 
-// The parameters of an IGES file are what stands in columns 1 to 64 of lines with P in column 73; Open
-// CASCADE also takes damaged lines for such.
+// The parameters of an IGES file are what stands in columns 1 to 64 of lines with P in column 73;
+// Open CASCADE also takes damaged lines for such.
 void requireIgesNumbersInRange(const FileContents& file) {
     constexpr std::size_t kColumns = 64, kLetter = 72;
     const std::string_view bytes(file.bytes);
