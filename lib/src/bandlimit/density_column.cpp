@@ -1,13 +1,54 @@
 #include "bandlimit/density_column.h"
 
+#include "core/instruction_sets.h"
 #include "core/stopwatch.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 namespace bandvox {
+
+namespace {
+
+BANDVOX_FOR_EACH_INSTRUCTION_SET
+void addRow(const float* differences, int count, double* sum) {
+    for (int i = 0; i < count; ++i) sum[i] += differences[i];
+}
+
+struct Extent {
+    float low, high;
+};
+
+// Writes the numbers in single precision, and says how far they reach.
+BANDVOX_FOR_EACH_INSTRUCTION_SET
+Extent roundTo(const std::vector<double>& numbers, float* rounded) {
+    // What compilers turn into vectors: several extents, each of every so manyth number.
+    constexpr std::size_t kLanes = 16;
+    std::array<float, kLanes> low, high;
+    low.fill(static_cast<float>(numbers[0]));
+    high = low;
+    const std::size_t whole = numbers.size() / kLanes * kLanes;
+    for (std::size_t i = 0; i < whole; i += kLanes) {
+        for (std::size_t l = 0; l < kLanes; ++l) {
+            const auto value = static_cast<float>(numbers[i + l]);
+            rounded[i + l] = value;
+            low[l] = value < low[l] ? value : low[l];
+            high[l] = value > high[l] ? value : high[l];
+        }
+    }
+    Extent found{*std::min_element(low.begin(), low.end()),
+                 *std::max_element(high.begin(), high.end())};
+    for (std::size_t i = whole; i < numbers.size(); ++i) {
+        rounded[i] = static_cast<float>(numbers[i]);
+        found = {std::min(found.low, rounded[i]), std::max(found.high, rounded[i])};
+    }
+    return found;
+}
+
+}  // namespace
 
 void ColumnStatistics::add(const ColumnStatistics& other) {
     closureError = std::max(closureError, other.closureError);
@@ -134,21 +175,18 @@ void DensityColumn::sumTile(bool hasDifferences, ColumnStatistics& statistics) {
     constexpr int kCell = NearCells::kCell;
     for (int x = 0; x < interior; ++x) {
         for (int y = 0; y < interior && hasDifferences; ++y) {
-            const float* differences = mFilter.row(mBuffer.get(), x, y);
-            double* sum = mSum.data() + static_cast<std::size_t>(y) * interior;
-            for (int z = 0; z < interior; ++z) sum[z] += differences[z];
+            addRow(mFilter.row(mBuffer.get(), x, y), interior,
+                   mSum.data() + static_cast<std::size_t>(y) * interior);
         }
         for (int y = 0; y < mNear.count(); ++y) {
             for (int z = 0; z < mNear.count(); ++z) {
                 if (!mNear.isNear(x / kCell, y, z)) snapCell(y, z, statistics);
             }
         }
-        float* density = mDensity.data() + static_cast<std::size_t>(x) * mSum.size();
-        for (std::size_t i = 0; i < mSum.size(); ++i) density[i] = static_cast<float>(mSum[i]);
+        const Extent found = roundTo(mSum, mDensity.data() + x * mSum.size());
+        statistics.minimum = std::min<double>(statistics.minimum, found.low);
+        statistics.maximum = std::max<double>(statistics.maximum, found.high);
     }
-    const auto [low, high] = std::minmax_element(mDensity.begin(), mDensity.end());
-    statistics.minimum = std::min<double>(statistics.minimum, *low);
-    statistics.maximum = std::max<double>(statistics.maximum, *high);
 }
 
 // Makes the sums of one cell's rows the whole number that they stand for, and measures how far

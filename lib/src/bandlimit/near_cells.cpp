@@ -1,5 +1,7 @@
 #include "bandlimit/near_cells.h"
 
+#include "core/instruction_sets.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +12,14 @@ namespace {
 // Quadrature points of a large element may lie this far apart, voxels; between them the surface
 // is unmarked.
 constexpr int kSampleGap = 3;
+
+// Adds what is marked, shifted both ways.
+BANDVOX_FOR_EACH_INSTRUCTION_SET
+void addShifted(const std::uint8_t* marked, std::size_t count, std::size_t shift,
+                std::uint8_t* sum) {
+    for (std::size_t i = 0; i + shift < count; ++i) sum[i + shift] |= marked[i];
+    for (std::size_t i = 0; i + shift < count; ++i) sum[i] |= marked[i + shift];
+}
 
 }  // namespace
 
@@ -58,13 +68,10 @@ void NearCells::widen() {
 void NearCells::dilate(std::size_t stride) {
     mDilated = mMarked;
     for (int step = 1; step <= mReach; ++step) {
-        const std::size_t shift = step * stride;
         // A shift across the border of a row marks cells that are far; that costs a little work
         // and changes nothing in what is stored.
-        for (std::size_t i = shift; i < mMarked.size(); ++i) {
-            mDilated[i] |= mMarked[i - shift];
-            mDilated[i - shift] |= mMarked[i];
-        }
+        const std::size_t shift = step * stride;
+        addShifted(mMarked.data(), mMarked.size(), shift, mDilated.data());
     }
     mMarked.swap(mDilated);
 }

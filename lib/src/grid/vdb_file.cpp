@@ -1,17 +1,14 @@
 #include "grid/guarded_reads.h"
-#include "grid/leaf_reading.h"
 #include "grid/leaf_writing.h"
 #include "grid/sound_extent.h"
 #include "grid/sound_transform.h"
+#include "grid/vdb_archive.h"
 
 #include <bandvox/core/atomic_file.h>
 #include <bandvox/core/error.h>
 #include <bandvox/grid/density_grid.h>
 
-#include <openvdb/io/Archive.h>
 #include <openvdb/io/Compression.h>
-#include <openvdb/io/GridDescriptor.h>
-#include <openvdb/io/io.h>
 
 #include <array>
 #include <cerrno>
@@ -47,41 +44,6 @@ std::uint32_t compressionFlags(VdbWriteOptions::Compression compression) {
     }
     return openvdb::io::COMPRESS_NONE;
 }
-
-// openvdb::io::File does not notice a full disk, and openvdb::io::Stream does not say which grid
-// it reads. The same archive on streams of our own does.
-class VdbArchive : public openvdb::io::Archive {
-  public:
-    using openvdb::io::Archive::write;
-
-    openvdb::GridPtrVec read(std::istream& stream, GuardedBuffer& buffer) {
-        ReadGuard& guard = buffer.guard();
-        readHeader(stream);
-        openvdb::io::StreamMetadata::Ptr metadata(new openvdb::io::StreamMetadata);
-        openvdb::io::setStreamMetadataPtr(stream, metadata, /*transfer=*/false);
-        openvdb::io::setVersion(stream, libraryVersion(), fileVersion());
-        openvdb::io::setDataCompression(stream, compression());
-        guard.watch(stream);
-        openvdb::MetaMap().readMeta(stream);
-
-        openvdb::GridPtrVec grids;
-        NamedGridMap named;
-        std::vector<openvdb::io::GridDescriptor> descriptors;
-        const std::int32_t count = readGridCount(stream);
-        for (std::int32_t i = 0; i < count; ++i) {
-            openvdb::io::GridDescriptor& descriptor = descriptors.emplace_back();
-            grids.push_back(descriptor.read(stream));
-            guard.beginGrid(*grids.back());
-            readByAllThreads(grids.back(), buffer, [&](const openvdb::GridBase::Ptr& grid) {
-                readGrid(grid, descriptor, stream);
-            });
-            guard.endGrid();
-            named[descriptor.uniqueName()] = grids.back();
-        }
-        for (const auto& descriptor : descriptors) connectInstance(descriptor, named);
-        return grids;
-    }
-};
 
 [[noreturn]] void failInput(const std::string& name, const std::string& why) {
     throw Error(ErrorKind::Input, name + ": " + why);
@@ -155,7 +117,7 @@ void writeVdb(AtomicFile& file, const openvdb::GridCPtrVec& grids, const VdbWrit
     try {
         std::ofstream stream = file.open();
         stream.exceptions(std::ios::badbit | std::ios::failbit);
-        archive.write(stream, saved, /*seekable=*/!file.inPlace(), openvdb::MetaMap());
+        archive.writeGrids(stream, saved, /*seekable=*/!file.inPlace());
         stream.close();
     } catch (const std::ios::failure&) {
         throw failed(std::strerror(errno));
