@@ -389,11 +389,11 @@ void bindOutline(py::module_& module) {
                 isKept[choiceOf(kind, lineKinds(), "kinds")] = true;
             }
             requireUsed(given, options, isKept);
-            const StrokeOptions standard;
+            const StrokeOptions look;
             return draw(sourcesOf(source, isoArgumentOf(iso), given), options, isKept,
-                        {width, hiddenWidth.value_or(standard.hiddenWidth), std::move(color),
-                         hiddenColor.value_or(standard.hiddenColor), dash.value_or(standard.dash),
-                         fillColors.value_or(standard.fillColors), shade.value_or(standard.shade)},
+                        {width, hiddenWidth.value_or(look.hiddenWidth), std::move(color),
+                         hiddenColor.value_or(look.hiddenColor), dash.value_or(look.dash),
+                         fillColors.value_or(look.fillColors), shade.value_or(look.shade)},
                         threads, progress);
         },
         py::arg("source"), py::kw_only(),
