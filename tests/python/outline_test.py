@@ -210,6 +210,13 @@ def test_arguments_of_patches_are_refused_for_grids():
         bandvox.outline(ball, suggestive=5, kinds=["contour"])
 
 
+def test_info_tells_of_patches(cylinder):
+    found = bandvox.info(TEAPOT)
+    assert found["patches"] == len(bandvox.Patches.read(TEAPOT)) and found["volume"] > 0
+    open_one = bandvox.info(cylinder)
+    assert not open_one["closed"] and open_one["bounds"]["max"] == pytest.approx([1, 1, 2])
+
+
 def area(points):
     """Within a closed path."""
     t = np.linspace(0, 1, 50, endpoint=False)[:, np.newaxis]

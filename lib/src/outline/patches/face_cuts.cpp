@@ -115,9 +115,9 @@ class CurveCut {
             }
             spans = std::move(halves);
         }
-        for (Span& span : spans) {
+        for (const Span& span : spans) {
             if (mRuns.empty() || mRuns.back().to.share != span.from.share) {
-                mRuns.push_back(std::move(span));
+                mRuns.push_back(span);
             } else {
                 mRuns.back().to = span.to;
             }
