@@ -1,8 +1,11 @@
 #include "bandlimit/spread_samples.h"
 
 #include "core/instruction_sets.h"
+#include "core/lanes.h"
 
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 
 namespace bandvox {
 
@@ -32,30 +35,6 @@ template <int kLanes>
     return first;
 }
 
-template <int kLanes>
-[[gnu::always_inline]] inline void spread(std::span<const SurfaceSample> samples, float offset,
-                                          const KernelPolynomials& kernel,
-                                          const SpreadLattice& lattice) {
-    alignas(64) float wx[kLanes], wy[kLanes], wz[kLanes];
-    for (const SurfaceSample& sample : samples) {
-        const float weight = -sample.areaVector.x();
-        if (weight == 0) continue;
-        const int x = axisWeights<kLanes>(kernel, sample.position.x() + offset, wx);
-        const int y = axisWeights<kLanes>(kernel, sample.position.y() + offset, wy);
-        const int z = axisWeights<kLanes>(kernel, sample.position.z() + offset, wz);
-        for (int i = 0; i < kernel.width; ++i) {
-            float* row =
-                lattice.nodes +
-                (static_cast<std::ptrdiff_t>(x + i) * lattice.yCount + y) * lattice.zStride + z;
-            const float plane = weight * wx[i];
-            for (int j = 0; j < kernel.width; ++j, row += lattice.zStride) {
-                const float line = plane * wy[j];
-                for (int k = 0; k < kLanes; ++k) row[k] += line * wz[k];
-            }
-        }
-    }
-}
-
 // So many floats in a row, added to others at once: of a loop over sixteen products the compiler
 // makes as many single ones.
 template <int kCount>
@@ -63,6 +42,108 @@ struct FloatRow {
     typedef float Type
         __attribute__((vector_size(kCount * sizeof(float)), aligned(alignof(float)), may_alias));
 };
+
+// Samples that are worked on together, each in a lane of its own.
+constexpr int kTogether = 8;
+using Floats = Lanes<kTogether>;
+typedef int Ints __attribute__((vector_size(kTogether * sizeof(int))));
+
+struct SampleBlock {
+    alignas(32) float position[3][kTogether];
+    alignas(32) float weight[kTogether];
+    int count;
+};
+
+// Takes samples from the front, but for those that weigh nothing. What is left of the block weighs
+// nothing.
+[[gnu::always_inline]] inline void takeSamples(std::span<const SurfaceSample>& samples,
+                                               float offset, SampleBlock& block) {
+    std::size_t taken = 0;
+    block.count = 0;
+    for (; taken < samples.size() && block.count < kTogether; ++taken) {
+        const SurfaceSample& sample = samples[taken];
+        const float weight = -sample.areaVector.x();
+        if (weight == 0) continue;
+        for (int axis = 0; axis < 3; ++axis) {
+            block.position[axis][block.count] = sample.position[axis] + offset;
+        }
+        block.weight[block.count++] = weight;
+    }
+    samples = samples.subspan(taken);
+    for (int i = block.count; i < kTogether; ++i) {
+        for (int axis = 0; axis < 3; ++axis) block.position[axis][i] = 0;
+        block.weight[i] = 0;
+    }
+}
+
+// As axisWeights, the first nodes and the arguments of the polynomials for a block.
+[[gnu::always_inline]] inline void beginWeights(const float* positions, float halfWidth, int* first,
+                                                Floats& z) {
+    Floats left;
+    loadLanes<kTogether>(positions, left);
+    left -= halfWidth;
+    const Ints truncated = __builtin_convertvector(left, Ints);
+    const Ints nodes = truncated - (__builtin_convertvector(truncated, Floats) < left);
+    std::memcpy(first, &nodes, sizeof nodes);
+    z = 2 * (__builtin_convertvector(nodes, Floats) - left) - 1;
+}
+
+// The weights along x and y of all samples at once, and those along z of one after the other, which
+// are next to each other in the lattice.
+template <int kLanes, int kWidth>
+[[gnu::always_inline]] inline void spread(std::span<const SurfaceSample> samples, float offset,
+                                          const KernelPolynomials& kernel,
+                                          const SpreadLattice& lattice) {
+    using Row = typename FloatRow<kLanes>::Type;
+    constexpr float kHalfWidth = 0.5F * kWidth;
+    SampleBlock block;
+    alignas(32) int first[3][kTogether];
+    alignas(32) float zArguments[kTogether], lines[kWidth * kWidth][kTogether];
+    const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(lattice.yCount) * lattice.zStride;
+    while (!samples.empty()) {
+        takeSamples(samples, offset, block);
+        Floats x, y, z, weight;
+        beginWeights(block.position[0], kHalfWidth, first[0], x);
+        beginWeights(block.position[1], kHalfWidth, first[1], y);
+        beginWeights(block.position[2], kHalfWidth, first[2], z);
+        storeLanes<kTogether>(z, zArguments);
+        loadLanes<kTogether>(block.weight, weight);
+
+        // Horner's rule.
+        Floats wx[kWidth], wy[kWidth];
+        for (int j = 0; j < kWidth; ++j) {
+            wx[j] = wy[j] = Floats{} + kernel.coefficients[j];
+            for (int p = 1; p <= kernel.degree; ++p) {
+                const float next = kernel.coefficients[p * SpreadingKernel::kPaddedWidth + j];
+                wx[j] = wx[j] * x + next;
+                wy[j] = wy[j] * y + next;
+            }
+            wx[j] *= weight;
+        }
+        for (int i = 0; i < kWidth; ++i) {
+            for (int j = 0; j < kWidth; ++j) {
+                storeLanes<kTogether>(wx[i] * wy[j], lines[i * kWidth + j]);
+            }
+        }
+
+        for (int n = 0; n < block.count; ++n) {
+            Row wz = *reinterpret_cast<const Row*>(kernel.coefficients);
+            for (int p = 1; p <= kernel.degree; ++p) {
+                wz = wz * zArguments[n] +
+                     *reinterpret_cast<const Row*>(kernel.coefficients +
+                                                   p * SpreadingKernel::kPaddedWidth);
+            }
+            float* rows = lattice.nodes + first[0][n] * plane +
+                          static_cast<std::ptrdiff_t>(first[1][n]) * lattice.zStride + first[2][n];
+            for (int i = 0; i < kWidth; ++i, rows += plane) {
+                float* row = rows;
+                for (int j = 0; j < kWidth; ++j, row += lattice.zStride) {
+                    *reinterpret_cast<Row*>(row) += lines[i * kWidth + j][n] * wz;
+                }
+            }
+        }
+    }
+}
 
 // The two weights go into the rows, so that one row of products serves both sums.
 template <int kLanes>
@@ -94,15 +175,33 @@ template <int kLanes>
 }
 
 BANDVOX_FOR_EACH_INSTRUCTION_SET
-void spreadNarrow(std::span<const SurfaceSample> samples, float offset,
-                  const KernelPolynomials& kernel, const SpreadLattice& lattice) {
-    spread<8>(samples, offset, kernel, lattice);
-}
-
-BANDVOX_FOR_EACH_INSTRUCTION_SET
-void spreadWide(std::span<const SurfaceSample> samples, float offset,
-                const KernelPolynomials& kernel, const SpreadLattice& lattice) {
-    spread<16>(samples, offset, kernel, lattice);
+void spreadAll(std::span<const SurfaceSample> samples, float offset,
+               const KernelPolynomials& kernel, const SpreadLattice& lattice) {
+    switch (kernel.width) {
+        case 2:
+            return spread<8, 2>(samples, offset, kernel, lattice);
+        case 3:
+            return spread<8, 3>(samples, offset, kernel, lattice);
+        case 4:
+            return spread<8, 4>(samples, offset, kernel, lattice);
+        case 5:
+            return spread<8, 5>(samples, offset, kernel, lattice);
+        case 6:
+            return spread<8, 6>(samples, offset, kernel, lattice);
+        case 7:
+            return spread<8, 7>(samples, offset, kernel, lattice);
+        case 8:
+            return spread<8, 8>(samples, offset, kernel, lattice);
+        case 9:
+            return spread<16, 9>(samples, offset, kernel, lattice);
+        case 10:
+            return spread<16, 10>(samples, offset, kernel, lattice);
+        case 11:
+            return spread<16, 11>(samples, offset, kernel, lattice);
+        default:
+            static_assert(SpreadingKernel::kMaximumWidth == 12);
+            return spread<16, 12>(samples, offset, kernel, lattice);
+    }
 }
 
 BANDVOX_FOR_EACH_INSTRUCTION_SET
@@ -125,14 +224,13 @@ KernelPolynomials polynomialsOf(const SpreadingKernel& kernel) {
 
 void spreadSamples(std::span<const SurfaceSample> samples, float offset,
                    const SpreadingKernel& kernel, const SpreadLattice& lattice) {
-    const auto spreadAll = kernel.paddedWidth() == 8 ? spreadNarrow : spreadWide;
     spreadAll(samples, offset, polynomialsOf(kernel), lattice);
 }
 
 void spreadSamples(std::span<const PairedSample> samples, float offset,
                    const SpreadingKernel& kernel, const SpreadLattice& lattice) {
-    const auto spreadAll = kernel.paddedWidth() == 8 ? spreadNarrowPairs : spreadWidePairs;
-    spreadAll(samples, offset, polynomialsOf(kernel), lattice);
+    const auto spreadPaired = kernel.paddedWidth() == 8 ? spreadNarrowPairs : spreadWidePairs;
+    spreadPaired(samples, offset, polynomialsOf(kernel), lattice);
 }
 
 }  // namespace bandvox

@@ -13,6 +13,10 @@ class CompensatedSum {
         mRest += std::abs(mSum) >= std::abs(x) ? (mSum - sum) + x : (x - sum) + mSum;
         mSum = sum;
     }
+    void add(const CompensatedSum& other) {
+        add(other.mSum);
+        mRest += other.mRest;
+    }
     double value() const { return mSum + mRest; }
 
   private:

@@ -1,4 +1,5 @@
 #include "source/compensated_sum.h"
+#include "source/index_blocks.h"
 #include "source/region_clip.h"
 #include "source/triangle_sampling.h"
 
@@ -8,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace bandvox {
 
@@ -16,19 +18,36 @@ using openvdb::Vec3d;
 
 MeshSource::MeshSource(std::string name, Mesh mesh)
     : mName(std::move(name)), mMesh(std::move(mesh)) {
-    for (std::size_t i = 0; i < mMesh.triangles.size(); ++i) mBounds.expand(elementBounds(i));
+    struct Block {
+        BBoxd bounds;
+        CompensatedSum volume, area;
+    };
+    const std::size_t count = mMesh.triangles.size();
+    std::vector<Block> blocks(indexBlocks(count));
+    forEachIndexBlock(count, [&](std::size_t begin, std::size_t end) {
+        BBoxd& bounds = blocks[begin / kIndexBlock].bounds;
+        for (std::size_t i = begin; i < end; ++i) bounds.expand(elementBounds(i));
+    });
+    for (const Block& block : blocks) mBounds.expand(block.bounds);
 
     // Sum relative to the middle of the box: far from the origin the volumes would cancel.
     const Vec3d middle = mMesh.triangles.empty() ? Vec3d(0) : mBounds.getCenter();
-    CompensatedSum volume;
-    CompensatedSum area;
-    for (const openvdb::Vec3I& t : mMesh.triangles) {
-        const Vec3d a = mMesh.points[t[0]] - middle;
-        const Vec3d b = mMesh.points[t[1]] - middle;
-        const Vec3d c = mMesh.points[t[2]] - middle;
-        const Vec3d normal = (b - a).cross(c - a);
-        volume.add(a.dot(normal) / 6.0);
-        area.add(0.5 * normal.length());
+    forEachIndexBlock(count, [&](std::size_t begin, std::size_t end) {
+        Block& block = blocks[begin / kIndexBlock];
+        for (std::size_t i = begin; i < end; ++i) {
+            const openvdb::Vec3I& t = mMesh.triangles[i];
+            const Vec3d a = mMesh.points[t[0]] - middle;
+            const Vec3d b = mMesh.points[t[1]] - middle;
+            const Vec3d c = mMesh.points[t[2]] - middle;
+            const Vec3d normal = (b - a).cross(c - a);
+            block.volume.add(a.dot(normal) / 6.0);
+            block.area.add(0.5 * normal.length());
+        }
+    });
+    CompensatedSum volume, area;
+    for (const Block& block : blocks) {
+        volume.add(block.volume);
+        area.add(block.area);
     }
     mVolume = volume.value();
     mArea = area.value();
