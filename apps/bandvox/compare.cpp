@@ -153,7 +153,7 @@ CompareRequest parseCompare(const CommandLine& line) {
     bool withMesh = false;
     for (std::size_t i = 0; i < 2; ++i) {
         request.inputs[i] = line.positional(i);
-        const bool isMesh = isMeshFile(request.inputs[i]);
+        const bool isMesh = isMeshFile(request.inputs[i]) && !isPatchFile(request.inputs[i]);
         if (!isMesh) requireVdb("compare", request.inputs[i]);
         withMesh = withMesh || isMesh;
     }

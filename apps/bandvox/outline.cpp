@@ -206,18 +206,21 @@ std::vector<double> readCosines(const CommandLine& line, const std::string& opti
         .value_or(fallback);
 }
 
+// An option that changes nothing is taken for a mistake. `use`: what it is for, and what is
+// expected.
+void requireUsed(const CommandLine& line, const char* option, bool isUsed, const char* use) {
+    if (!line.has(option) || isUsed) return;
+    throw Error(ErrorKind::Usage, std::string("--") + option + " is for " + use);
+}
+
 void readFill(const CommandLine& line, OutlineRequest& request) {
     OutlineOptions& options = request.options;
     options.fill = static_cast<OutlineFillKind>(line.choice("fill", 0));
-    const auto needsFill = [&](const char* option, bool isFilled, const char* fill) {
-        if (!line.has(option) || isFilled) return;
-        throw Error(ErrorKind::Usage,
-                    std::string("--") + option + " is for --fill " + fill + "; expected that, too");
-    };
     const bool isToon = options.fill == OutlineFillKind::Toon;
-    needsFill("tones", isToon, "toon");
-    needsFill("shade", isToon, "toon");
-    needsFill("fill-colors", options.fill != OutlineFillKind::None, "flat or toon");
+    requireUsed(line, "tones", isToon, "--fill toon; expected that, too");
+    requireUsed(line, "shade", isToon, "--fill toon; expected that, too");
+    requireUsed(line, "fill-colors", options.fill != OutlineFillKind::None,
+                "--fill flat or toon; expected that, too");
     options.tones = readCosines(line, "tones", options.tones);
     const auto& tones = options.tones;
     if (std::adjacent_find(tones.begin(), tones.end(), std::greater_equal<>()) != tones.end()) {
@@ -230,6 +233,37 @@ void readFill(const CommandLine& line, OutlineRequest& request) {
             request.stroke.fillColors.emplace_back(color);
         }
     }
+}
+
+void readKinds(const CommandLine& line, OutlineRequest& request) {
+    request.kinds = line.choices("kinds", kOutlineKinds);
+    const auto isKept = [&](OutlineKind kind) {
+        return request.kinds[static_cast<std::size_t>(kind)];
+    };
+    requireUsed(line, "isophotes", isKept(OutlineKind::Isophote),
+                "isophotes, which --kinds leaves out; expected isophote among them");
+    requireUsed(line, "suggestive", isKept(OutlineKind::Suggestive),
+                "suggestive contours, which --kinds leaves out; expected suggestive among them");
+    requireUsed(line, "crease-angle", isKept(OutlineKind::Crease),
+                "creases, which --kinds leaves out; expected crease among them");
+    const OutlineOptions& options = request.options;
+    requireUsed(line, "light", options.fill == OutlineFillKind::Toon || !options.isophotes.empty(),
+                "--isophotes and --fill toon; expected one of them, too");
+}
+
+void readStrokes(const CommandLine& line, OutlineRequest& request) {
+    request.options.hidden = !line.has("no-hidden");
+    for (const char* const option : {"hidden-stroke", "hidden-color", "dash"}) {
+        requireUsed(line, option, request.options.hidden,
+                    "hidden lines, which --no-hidden leaves away; expected one of the two");
+    }
+    StrokeOptions& stroke = request.stroke;
+    stroke.width = line.number("stroke", kSomeLength, stroke.width);
+    stroke.hiddenWidth = line.number("hidden-stroke", kSomeLength, stroke.hiddenWidth);
+    stroke.color = readStyle(line, "stroke-color", stroke.color);
+    stroke.hiddenColor = readStyle(line, "hidden-color", stroke.hiddenColor);
+    stroke.dash = readStyle(line, "dash", stroke.dash);
+    requireValid(stroke);
 }
 
 // What a format cannot hold is said before anything is drawn.
@@ -255,6 +289,7 @@ OutlineRequest parseOutline(const CommandLine& line) {
     options.creaseAngle = line.number("crease-angle", {.low = 0, .high = 180}, options.creaseAngle);
     options.camera = readCamera(
         line, (options.height - 2 * options.margin) / (options.width - 2 * options.margin));
+    requireUsedCamera(line, options.camera);
     options.isophotes = readCosines(line, "isophotes", {});
     if (line.has("suggestive")) {
         options.suggestive = line.number("suggestive", {.low = 0, .high = 1e9}, 0);
@@ -262,15 +297,8 @@ OutlineRequest parseOutline(const CommandLine& line) {
     readFill(line, request);
     options.light = line.vector("light", kAnyPlace).value_or(options.light);
     if (!(options.light.length() > 0)) line.fail("light", "a direction, X,Y,Z, not all 0");
-    request.kinds = line.choices("kinds", kOutlineKinds);
-    options.hidden = !line.has("no-hidden");
-    request.stroke.width = line.number("stroke", kSomeLength, request.stroke.width);
-    request.stroke.hiddenWidth =
-        line.number("hidden-stroke", kSomeLength, request.stroke.hiddenWidth);
-    request.stroke.color = readStyle(line, "stroke-color", request.stroke.color);
-    request.stroke.hiddenColor = readStyle(line, "hidden-color", request.stroke.hiddenColor);
-    request.stroke.dash = readStyle(line, "dash", request.stroke.dash);
-    requireValid(request.stroke);
+    readKinds(line, request);
+    readStrokes(line, request);
     requireWritable(line, request);
     return request;
 }

@@ -113,6 +113,7 @@ OutlineInputs readOutlineInputs(const CommandLine& line) {
     requireUse(line, {"resolution", "voxel-size", "cutoff", "order"}, hasSolid,
                "meshes and built-in shapes");
     requireUse(line, {"iso", "suggestive"}, hasVolume || hasSolid, "volumes and meshes");
+    requireUse(line, {"crease-angle"}, inputs.has(OutlineInputKind::Patches), "free-form surfaces");
     inputs.grid = line.text("grid");
     inputs.iso = readIso(line, {});
     readSize(line, inputs.density.resolution, inputs.density.voxelSize);

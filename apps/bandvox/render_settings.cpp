@@ -71,6 +71,20 @@ CameraOptions readCamera(const OptionValues& values, double aspect) {
     return camera;
 }
 
+void requireUsedCamera(const OptionValues& values, const CameraOptions& camera) {
+    if (values.has("from") && camera.eye) {
+        values.fail("from",
+                    "either this direction to an eye that is chosen, or an eye, which is "
+                    "given too");
+    }
+    if (camera.projection != CameraOptions::Projection::Orthographic) return;
+    for (const char* const lens : {"focal", "aperture", "fov"}) {
+        if (values.has(lens)) {
+            values.fail(lens, "a perspective view beside it; --frame is the width of this one");
+        }
+    }
+}
+
 std::vector<OptionEntry> cameraEntries() {
     const CameraOptions camera;
     const std::string view = "Camera";

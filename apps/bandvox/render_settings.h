@@ -20,6 +20,10 @@ std::vector<OptionEntry> cameraEntries();
 /// Throws as readPictureOptions does.
 CameraOptions readCamera(const OptionValues& values, double aspect);
 
+/// Throws Error(ErrorKind::Usage) for options of the camera that change nothing: a lens of a
+/// parallel view, a direction to an eye that is given.
+void requireUsedCamera(const OptionValues& values, const CameraOptions& camera);
+
 /// Reads all. Throws Error(ErrorKind::Usage), and Error(ErrorKind::Input) for a file with a camera
 /// that cannot be used.
 PictureOptions readPictureOptions(const OptionValues& values);

@@ -119,6 +119,14 @@ PatchSolid loadPatchSolid(CommandRun& run, const std::string& input,
 }
 
 void requireMeshOrShape(const std::string& verb, const std::string& input) {
+    if (isPatchFile(input)) {
+        throw Error(ErrorKind::Input,
+                    "cannot " + verb + " '" + input +
+                        "': it holds free-form surfaces; make a mesh of them first: bandvox "
+                        "convert " +
+                        input + " -o " + std::filesystem::path(input).stem().string() +
+                        "-mesh.ply --resolution 256");
+    }
     if (isShape(input) || isMeshFile(input)) return;
     const std::string extension = extensionOf(input);
     const std::string found = extension.empty() ? "it has no extension"

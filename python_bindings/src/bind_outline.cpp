@@ -115,6 +115,40 @@ StrokeOptions checked(const StrokeOptions& stroke) {
     return stroke;
 }
 
+/// Arguments that some drawings have no use for; nothing was given where there is no value.
+struct OptionalArguments {
+    std::optional<double> creaseAngle, hiddenWidth, suggestive, shade;
+    std::optional<std::string> hiddenColor, dash;
+    std::optional<std::array<double, 3>> light;
+    std::optional<std::vector<double>> tones;
+    std::optional<std::vector<std::string>> fillColors;
+};
+
+/// An argument that changes nothing is taken for a mistake.
+void requireUsed(bool isGiven, bool isUsed, const char* message) {
+    if (isGiven && !isUsed) throw Error(ErrorKind::Usage, message);
+}
+
+void requireUsed(const OptionalArguments& given, const OutlineOptions& options,
+                 const std::vector<bool>& kinds) {
+    const auto isKept = [&](OutlineKind kind) { return kinds[static_cast<std::size_t>(kind)]; };
+    requireUsed(given.hiddenWidth || given.hiddenColor || given.dash, options.hidden,
+                "hidden_stroke, hidden_color and dash are for hidden lines; expected hidden=True");
+    requireUsed(given.creaseAngle.has_value(), isKept(OutlineKind::Crease),
+                "crease_angle is for creases; expected 'crease' among the kinds");
+    requireUsed(!options.isophotes.empty(), isKept(OutlineKind::Isophote),
+                "isophotes are lines of a kind; expected 'isophote' among the kinds");
+    requireUsed(given.suggestive.has_value(), isKept(OutlineKind::Suggestive),
+                "suggestive contours are lines of a kind; expected 'suggestive' among the kinds");
+    const bool isToon = options.fill == OutlineFillKind::Toon;
+    requireUsed(given.tones || given.shade, isToon,
+                "tones and shade are for a toon fill; expected fill='toon'");
+    requireUsed(given.fillColors.has_value(), options.fill != OutlineFillKind::None,
+                "fill_colors are for fills; expected fill='flat' or 'toon'");
+    requireUsed(given.light.has_value(), isToon || !options.isophotes.empty(),
+                "light is for isophotes and toon fills; expected isophotes or fill='toon'");
+}
+
 /// Width and height in millimetres of a page with a name, as in "A4-landscape".
 std::array<double, 2> namedPage(const std::string& name) {
     const std::map<std::string, std::array<double, 2>> sizes{
@@ -199,7 +233,7 @@ void addSource(const py::handle& source, DrawnSources& sources) {
     }
 }
 
-void addSources(const py::object& source, DrawnSources& sources) {
+void addSources(const py::object& source, const OptionalArguments& given, DrawnSources& sources) {
     if (py::isinstance<py::list>(source) || py::isinstance<py::tuple>(source)) {
         for (const py::handle part : source) addSource(part, sources);
     } else {
@@ -212,6 +246,11 @@ void addSources(const py::object& source, DrawnSources& sources) {
     if (sources.grid && sources.volumeFiles.empty()) {
         throw Error(ErrorKind::Usage, "grid is for .vdb files, and there is none; expected one");
     }
+    requireUsed(given.suggestive.has_value(), sources.hasVolumes(),
+                "suggestive contours are of grids and meshes, and there is none; expected one");
+    requireUsed(given.creaseAngle.has_value(),
+                !sources.patches.patches.empty() || !sources.patchFiles.empty(),
+                "crease_angle is for patches, and there are none; expected some");
 }
 
 void readSources(DrawnSources& sources, Progress& progress) {
@@ -237,11 +276,8 @@ void readSources(DrawnSources& sources, Progress& progress) {
 }
 
 std::shared_ptr<DrawingObject> draw(DrawnSources sources, const OutlineOptions& options,
-                                    const std::vector<std::string>& kinds,
-                                    const StrokeOptions& stroke, int threads,
-                                    const py::object& progress) {
-    std::vector<bool> isKept(lineKinds().size());
-    for (const std::string& kind : kinds) isKept[choiceOf(kind, lineKinds(), "kinds")] = true;
+                                    const std::vector<bool>& isKept, const StrokeOptions& stroke,
+                                    int threads, const py::object& progress) {
     auto drawing = std::make_shared<DrawingObject>();
     drawing->stroke = checked(stroke);
     drawing->outline = inBackground(progress, threads, [&](Progress& watched) {
@@ -353,54 +389,68 @@ void bindOutline(py::module_& module) {
     module.def(
         "outline",
         [](const py::object& source, const py::object& page, const std::optional<double>& margin,
-           double tolerance, double creaseAngle, const std::vector<std::string>& kinds, bool hidden,
-           double width, std::string color, double hiddenWidth, std::string hiddenColor,
-           std::string dash, const py::object& eye, const py::object& lookat, const py::object& up,
-           const py::object& from, const py::object& camera, const py::object& cameraFile,
-           const std::optional<double>& focal, const std::optional<double>& aperture,
-           const std::optional<double>& fov, const std::optional<double>& frame,
-           const std::optional<std::string>& grid, const py::object& iso, int resolution,
-           double voxelSize, double cutoff, double order, const std::vector<double>& isophotes,
-           const std::optional<double>& suggestive, const std::array<double, 3>& light,
-           const std::string& fill, const std::vector<double>& tones,
-           std::vector<std::string> fillColors, double shade, int threads,
-           const py::object& progress) {
+           double tolerance, const std::optional<double>& creaseAngle,
+           const std::vector<std::string>& kinds, bool hidden, double width, std::string color,
+           const std::optional<double>& hiddenWidth, const std::optional<std::string>& hiddenColor,
+           const std::optional<std::string>& dash, const py::object& eye, const py::object& lookat,
+           const py::object& up, const py::object& from, const py::object& camera,
+           const py::object& cameraFile, const std::optional<double>& focal,
+           const std::optional<double>& aperture, const std::optional<double>& fov,
+           const std::optional<double>& frame, const std::optional<std::string>& grid,
+           const py::object& iso, int resolution, double voxelSize, double cutoff, double order,
+           const std::vector<double>& isophotes, const std::optional<double>& suggestive,
+           const std::optional<std::array<double, 3>>& light, const std::string& fill,
+           const std::optional<std::vector<double>>& tones,
+           const std::optional<std::vector<std::string>>& fillColors,
+           const std::optional<double>& shade, int threads, const py::object& progress) {
+            const OptionalArguments given{creaseAngle, hiddenWidth, suggestive,
+                                          shade,       hiddenColor, dash,
+                                          light,       tones,       fillColors};
             OutlineOptions options;
             options.isophotes = isophotes;
             options.suggestive = suggestive;
-            options.light = openvdb::Vec3d(light.data());
+            if (light) options.light = openvdb::Vec3d(light->data());
             if (!(options.light.length() > 0)) {
                 throw Error(ErrorKind::Usage, "light: expected a direction that is not all 0");
             }
             options.fill =
                 static_cast<OutlineFillKind>(choiceOf(fill, {"none", "flat", "toon"}, "fill"));
-            options.tones = tones;
+            options.tones = tones.value_or(options.tones);
             setPage(options, page, margin);
             options.tolerance = tolerance;
-            options.creaseAngle = creaseAngle;
+            options.creaseAngle = creaseAngle.value_or(options.creaseAngle);
             options.hidden = hidden;
+            const CameraArguments view{eye,        lookat, up,       from, camera,
+                                       cameraFile, focal,  aperture, fov,  frame};
             options.camera = cameraOf(
-                {eye, lookat, up, from, camera, cameraFile, focal, aperture, fov, frame},
-                (options.height - 2 * options.margin) / (options.width - 2 * options.margin));
+                view, (options.height - 2 * options.margin) / (options.width - 2 * options.margin));
+            requireUsed(view, options.camera);
+            std::vector<bool> isKept(lineKinds().size());
+            for (const std::string& kind : kinds) {
+                isKept[choiceOf(kind, lineKinds(), "kinds")] = true;
+            }
+            requireUsed(given, options, isKept);
+            const StrokeOptions look;
             DrawnSources sources;
             sources.grid = grid;
             sources.iso = isoArgumentOf(iso);
             sources.density.resolution = resolution;
             sources.density.voxelSize = voxelSize;
             sources.density.filter = ExponentialFilter{order, cutoff};
-            addSources(source, sources);
-            return draw(std::move(sources), options, kinds,
-                        {width, hiddenWidth, std::move(color), std::move(hiddenColor),
-                         std::move(dash), std::move(fillColors), shade},
+            addSources(source, given, sources);
+            return draw(std::move(sources), options, isKept,
+                        {width, hiddenWidth.value_or(look.hiddenWidth), std::move(color),
+                         hiddenColor.value_or(look.hiddenColor), dash.value_or(look.dash),
+                         fillColors.value_or(look.fillColors), shade.value_or(look.shade)},
                         threads, progress);
         },
         py::arg("source"), py::kw_only(),
         py::arg("page") = std::array<double, 2>{standard.width, standard.height},
         py::arg("margin") = py::none(), py::arg("tolerance") = standard.tolerance,
-        py::arg("crease_angle") = standard.creaseAngle, py::arg("kinds") = lineKinds(),
+        py::arg("crease_angle") = py::none(), py::arg("kinds") = lineKinds(),
         py::arg("hidden") = true, py::arg("stroke") = stroke.width,
-        py::arg("stroke_color") = stroke.color, py::arg("hidden_stroke") = stroke.hiddenWidth,
-        py::arg("hidden_color") = stroke.hiddenColor, py::arg("dash") = stroke.dash,
+        py::arg("stroke_color") = stroke.color, py::arg("hidden_stroke") = py::none(),
+        py::arg("hidden_color") = py::none(), py::arg("dash") = py::none(),
         py::arg("eye") = py::none(), py::arg("lookat") = py::none(), py::arg("up") = py::none(),
         py::arg("from_") = py::none(), py::arg("camera") = py::none(),
         py::arg("camera_file") = py::none(), py::arg("focal") = py::none(),
@@ -409,11 +459,9 @@ void bindOutline(py::module_& module) {
         py::arg("resolution") = density.resolution, py::arg("voxel_size") = 0.0,
         py::arg("cutoff") = density.filter.cutoff, py::arg("order") = density.filter.order,
         py::arg("isophotes") = standard.isophotes, py::arg("suggestive") = py::none(),
-        py::arg("light") =
-            std::array<double, 3>{standard.light[0], standard.light[1], standard.light[2]},
-        py::arg("fill") = "none", py::arg("tones") = standard.tones,
-        py::arg("fill_colors") = stroke.fillColors, py::arg("shade") = stroke.shade,
-        py::arg("threads") = 0, py::arg("progress") = py::none(),
+        py::arg("light") = py::none(), py::arg("fill") = "none", py::arg("tones") = py::none(),
+        py::arg("fill_colors") = py::none(), py::arg("shade") = py::none(), py::arg("threads") = 0,
+        py::arg("progress") = py::none(),
         R"(Draws free-form surfaces, volumes and meshes as lines; returns a Drawing.
 
 source: Patches, a file of them (.bpt, .obj, .step, .iges or .brep), a Grid, a .vdb file, a mesh
@@ -422,16 +470,17 @@ only one of floats if it is None. iso: the value of grids that is the surface, a
 resolution, voxel_size, cutoff, order: of the density that is made of a mesh or a shape, as of
 bandlimit; fewer voxels leave small detail away. isophotes: lines where the cosine of the angle
 between the normal and the direction to the light is one of these; light: along the camera's right,
-up and back. suggestive: of grids, draw suggestive contours of at least this strength, as in 20.
-fill: what is between lines, 'none', 'flat', a colour for each object, or 'toon', tones of it;
-tones: cosines of that angle at which they change, ascending; fill_colors: of the objects, one after
-the other, '#rrggbb'; shade: the darkest tone, as a part of the colour, 0 to 1. page: width and
-height, millimetres, or 'A3', 'A4', 'A5' or 'letter', also with '-landscape'; margin: what stays
-free. tolerance: how far lines may be from the true ones, millimetres. crease_angle: patches that
-meet at more have a line between, degrees, 0 to 180. kinds: which lines are drawn. hidden: keep
-those behind something. stroke, hidden_stroke: widths, millimetres; stroke_color, hidden_color: as
-in CSS; dash: of hidden lines. The camera's words are those of render. Raises ResultError if nothing
-is to be drawn.)");
+up and back, (-0.4, 0.7, 0.8) if there is none. suggestive: of grids, draw suggestive contours of at
+least this strength, as in 20. fill: what is between lines, 'none', 'flat', a colour for each
+object, or 'toon', tones of it; tones: cosines of that angle at which they change, ascending,
+(0.25, 0.7) if there are none; fill_colors: of the objects, one after the other, '#rrggbb'; shade:
+the darkest tone, as a part of the colour, 0 to 1, else 0.45. page: width and height, millimetres,
+or 'A3', 'A4', 'A5' or 'letter', also with '-landscape'; margin: what stays free. tolerance: how far
+lines may be from the true ones, millimetres. crease_angle: patches that meet at more, else at more
+than 5, have a line between, degrees, 0 to 180. kinds: which lines are drawn. hidden: keep those
+behind something. stroke, hidden_stroke: widths, millimetres; stroke_color, hidden_color: as in CSS;
+dash: of hidden lines. The camera's words are those of render. Raises UsageError for arguments that
+change nothing of this drawing, ResultError if nothing is to be drawn.)");
 }
 
 }  // namespace bandvox::python

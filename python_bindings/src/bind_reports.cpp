@@ -4,15 +4,18 @@
 #include "bindings.h"
 #include "errors.h"
 #include "grid_object.h"
+#include "patches_object.h"
 #include "solid_mesh.h"
 
 #include <bandvox/core/atomic_file.h>
 #include <bandvox/core/error.h>
 #include <bandvox/source/read_mesh.h>
+#include <bandvox/source/read_patches.h>
 
 #include <grid_report.h>
 #include <mesh_report.h>
 #include <nlohmann/json.hpp>
+#include <patch_report.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 #include <view_page.h>
@@ -21,6 +24,7 @@
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 namespace bandvox::python {
 
@@ -35,7 +39,13 @@ py::object objectOf(const Json& json) {
     return py::module_::import("json").attr("loads")(text);
 }
 
+bool isPatchFile(const std::filesystem::path& path) {
+    return mayHoldPatches(path) &&
+           (!isMeshFile(path) || (std::filesystem::is_regular_file(path) && hasFreeForm(path)));
+}
+
 Json fileReport(const std::filesystem::path& path, Progress& progress) {
+    if (isPatchFile(path)) return app::patchReport(path.string(), progress);
     if (isMeshFile(path)) return app::meshReport(path.string(), progress);
     const openvdb::GridPtrVec grids = readVdb(path, progress);
     Json report;
@@ -51,6 +61,12 @@ py::object info(const py::object& source, int threads, const py::object& progres
         const auto path = source.cast<std::filesystem::path>();
         return objectOf(inBackground(progress, threads,
                                      [&](Progress& watched) { return fileReport(path, watched); }));
+    }
+    if (py::isinstance<PatchesObject>(source)) {
+        PatchModel model = source.cast<const PatchesObject&>().model;
+        return objectOf(inBackground(progress, threads, [&](Progress& watched) {
+            return app::patchReport(std::move(model), watched);
+        }));
     }
     if (const auto mesh = meshOf(source)) {
         return objectOf(inBackground(progress, threads, [&](Progress& watched) {
@@ -101,11 +117,12 @@ void bindReports(py::module_& module) {
     module.def(
         "info", &info, py::arg("source"), py::kw_only(), py::arg("threads") = 0,
         py::arg("progress") = py::none(),
-        R"(What a .vdb file, a mesh file, a grid or a Mesh is, a dictionary as `bandvox info --json`
-prints it.
+        R"(What a .vdb file, a mesh file, one of free-form surfaces, a grid, a Mesh or Patches are, a
+dictionary as `bandvox info --json` prints it.
 
-Of grids size, voxels, class, type and metadata; of meshes the holes and whatever else keeps them
-from being the boundary of a solid, and the volume and area of the solid that is made of them.)");
+Of grids size, voxels, class, type and metadata; of meshes and patches the holes and whatever else
+keeps them from being the boundary of a solid, and the volume and area of the solid that is made of
+them.)");
     module.def("view", &view, py::arg("path"), py::arg("grid"), py::kw_only(),
                py::arg("title") = py::none(), py::arg("iso") = py::none(),
                py::arg("size") = app::kViewSize, py::arg("threads") = 0,

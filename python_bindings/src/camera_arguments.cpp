@@ -54,4 +54,19 @@ CameraOptions cameraOf(const CameraArguments& arguments, double aspect) {
     return options;
 }
 
+void requireUsed(const CameraArguments& arguments, const CameraOptions& options) {
+    if (!arguments.from.is_none() && options.eye) {
+        throw Error(
+            ErrorKind::Usage,
+            "from_ is the direction to an eye that is chosen, and an eye is given; expected "
+            "one of the two");
+    }
+    const bool hasLens = arguments.focal || arguments.aperture || arguments.fov;
+    if (hasLens && options.projection == CameraOptions::Projection::Orthographic) {
+        throw Error(ErrorKind::Usage,
+                    "focal, aperture and fov are for a perspective view; expected frame, the width "
+                    "of an orthographic one, or camera='perspective'");
+    }
+}
+
 }  // namespace bandvox::python

@@ -25,4 +25,8 @@ struct CameraArguments {
 /// view, Error(ErrorKind::Input) for a file without a camera.
 CameraOptions cameraOf(const CameraArguments& arguments, double aspect);
 
+/// Throws Error(ErrorKind::Usage) for arguments that change nothing: a lens of a parallel view, a
+/// direction to an eye that is given.
+void requireUsed(const CameraArguments& arguments, const CameraOptions& options);
+
 }  // namespace bandvox::python

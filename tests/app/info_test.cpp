@@ -6,10 +6,16 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
+#include <sstream>
+#include <string>
+#include <vector>
+
 namespace bandvox::app_test {
 namespace {
 
 using Json = nlohmann::json;
+using Names = std::vector<std::string>;
 
 TEST(Info, TellsOfADensityAsJson) {
     const TemporaryFolder folder;
@@ -147,6 +153,83 @@ TEST(Info, WritesStatistics) {
     const Json statistics = Json::parse(readText(folder / "s.json"));
     EXPECT_EQ(statistics.at("command"), "info");
     EXPECT_EQ(statistics.at("counts").at("grids"), 4);
+}
+
+// A flat patch, a side of a box from corner to corner.
+std::string flatPatch(const std::array<std::array<double, 3>, 4>& corners) {
+    std::ostringstream text;
+    text << "1 1\n";
+    for (const auto& p : corners) text << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+    return text.str();
+}
+
+// Of a box of sides 2, 3, 4 with its top left out if it is open.
+std::string boxOfPatches(bool isOpen) {
+    std::string text = isOpen ? "5\n" : "6\n";
+    text += flatPatch({{{0, 0, 0}, {0, 3, 0}, {2, 0, 0}, {2, 3, 0}}});
+    text += flatPatch({{{0, 0, 0}, {0, 0, 4}, {0, 3, 0}, {0, 3, 4}}});
+    text += flatPatch({{{2, 0, 0}, {2, 3, 0}, {2, 0, 4}, {2, 3, 4}}});
+    text += flatPatch({{{0, 0, 0}, {2, 0, 0}, {0, 0, 4}, {2, 0, 4}}});
+    text += flatPatch({{{0, 3, 0}, {0, 3, 4}, {2, 3, 0}, {2, 3, 4}}});
+    if (!isOpen) text += flatPatch({{{0, 0, 4}, {2, 0, 4}, {0, 3, 4}, {2, 3, 4}}});
+    return text;
+}
+
+TEST(Info, TellsOfPatchesWhatItTellsOfMeshes) {
+    const TemporaryFolder folder;
+    const RunOptions here{.folder = folder.path()};
+    writeText(folder.path() / "box.bpt", boxOfPatches(false));
+    writeText(folder.path() / "open.bpt", boxOfPatches(true));
+    const auto box = Json::parse(runBandvox({"info", "box.bpt", "--json"}, here).out);
+    EXPECT_EQ(box.at("patches"), 6);
+    EXPECT_EQ(box.at("closed"), true);
+    EXPECT_NEAR(box.at("volume").get<double>(), 24, 1e-9);
+    EXPECT_NEAR(box.at("area").get<double>(), 52, 1e-9);
+    const std::vector<double> high = box.at("bounds").at("max");
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(high[c], 2.0 + static_cast<double>(c), 1e-9);
+    EXPECT_TRUE(box.at("problem").is_null());
+    const auto open = Json::parse(runBandvox({"info", "open.bpt", "--json"}, here).out);
+    EXPECT_EQ(open.at("closed"), false);
+    ASSERT_EQ(open.at("holes").size(), 1U);
+    EXPECT_NEAR(open.at("holes")[0].at("perimeter").get<double>(), 10, 1e-9);
+    EXPECT_NEAR(open.at("volume").get<double>(), 24, 1e-9);
+    const RunResult words = runBandvox({"info", "box.bpt"}, here);
+    EXPECT_EQ(words.status, 0);
+    EXPECT_NE(words.out.find("free-form surfaces"), std::string::npos) << words.out;
+    // One that encloses nothing has bounds nevertheless.
+    writeText(folder.path() / "flat.bpt",
+              "1\n" + flatPatch({{{0, 0, 0}, {0, 3, 0}, {2, 0, 0}, {2, 3, 0}}}));
+    const auto flat = Json::parse(runBandvox({"info", "flat.bpt", "--json"}, here).out);
+    EXPECT_TRUE(flat.at("volume").is_null());
+    EXPECT_TRUE(flat.at("problem").is_string());
+    EXPECT_EQ(flat.at("bounds").at("max")[1], 3);
+    EXPECT_EQ(runBandvox({"info", "none.bpt"}, here).status, 3);
+}
+
+TEST(Info, OfPatchesOtherCommandsSayWhatToDo) {
+    const TemporaryFolder folder;
+    const RunOptions here{.folder = folder.path()};
+    writeText(folder.path() / "box.bpt", boxOfPatches(false));
+    writeText(folder.path() / "sheet.obj",
+              "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\ncstype bezier\ndeg 1 1\n"
+              "surf 0 1 0 1 1 2 3 4\nparm u 0 1\nparm v 0 1\nend\n");
+    for (const std::string file : {"box.bpt", "sheet.obj"}) {
+        const std::vector<Names> commands{{"compare", file, file},
+                                          {"render", file, "-o", "a.png"},
+                                          {"voxelize", file, "-o", "a.vdb"},
+                                          {"merge", file, file, "-o", "a.vdb"}};
+        for (const Names& command : commands) {
+            const RunResult result = runBandvox(command, here);
+            EXPECT_EQ(result.status, 3) << command[0] << file << result.err;
+            EXPECT_NE(result.err.find("bandvox convert " + file), std::string::npos)
+                << command[0] << result.err;
+        }
+    }
+    // What voxelize says can be done.
+    EXPECT_EQ(
+        runBandvox({"convert", "box.bpt", "-o", "box-mesh.ply", "--resolution", "24"}, here).status,
+        0);
+    EXPECT_EQ(runBandvox({"voxelize", "box-mesh.ply", "-r", "16", "-o", "a.vdb"}, here).status, 0);
 }
 
 }  // namespace

@@ -364,6 +364,8 @@ TEST(Outline, RefusesOptionsOfVolumesThatHaveNoUse) {
     EXPECT_EQ(statusOf({kTeapotFile, "--suggestive", "5"}), 2);
     EXPECT_EQ(statusOf({"ball.vdb", "--suggestive", "-5"}), 2);
     EXPECT_EQ(statusOf({"ball.vdb", "--suggestive", "5"}), 0);
+    EXPECT_EQ(statusOf({"ball.vdb", "--suggestive", "5", "--kinds", "contour"}), 2);
+    EXPECT_EQ(statusOf({"ball.vdb", "--crease-angle", "5"}), 2);
     EXPECT_EQ(statusOf({"ball.vdb", "--order", "4"}), 2);
     EXPECT_EQ(statusOf({"ball.vdb", "--isophotes", "1"}), 2);
     EXPECT_EQ(statusOf({"ball.vdb", "--light", "0,0,0"}), 2);
@@ -372,6 +374,45 @@ TEST(Outline, RefusesOptionsOfVolumesThatHaveNoUse) {
     EXPECT_EQ(statusOf({"ball.vdb", "--grid", "other"}), 3);
     EXPECT_EQ(statusOf({"nothing.vdb"}), 3);
     EXPECT_EQ(statusOf({"picture.png"}), 3);
+}
+
+TEST(Outline, RefusesOptionsThatChangeNothing) {
+    const TemporaryFolder folder;
+    const std::vector<Names> idle{
+        {"--no-hidden", "--dash", "1 1"},
+        {"--no-hidden", "--hidden-stroke", "0.1"},
+        {"--no-hidden", "--hidden-color", "#888888"},
+        {"--camera", "orthographic", "--focal", "50"},
+        {"--camera", "orthographic", "--fov", "40"},
+        {"--camera", "orthographic", "--aperture", "20"},
+        {"--eye", "0,-20,5", "--from", "0,-1,0"},
+        {"--light", "0,0,1"},
+        {"--light", "0,0,1", "--fill", "flat"},
+        {"--isophotes", "0.5", "--kinds", "contour,crease"},
+        {"--crease-angle", "10", "--kinds", "contour"},
+        {"--tones", "0.5"},
+        {"--shade", "0.5", "--fill", "flat"},
+        {"--fill-colors", "#123456"},
+    };
+    for (const Names& options : idle) {
+        Names words{"outline", kTeapotFile, "-o", "out.svg"};
+        words.insert(words.end(), options.begin(), options.end());
+        const RunResult found = runBandvox(words, {.folder = folder.path()});
+        EXPECT_EQ(found.status, 2) << options.back() << found.err;
+        EXPECT_NE(found.err.find("expected"), std::string::npos) << found.err;
+    }
+    const std::vector<Names> used{
+        {"--light", "0,0,1", "--isophotes", "0.5"},
+        {"--light", "0,0,1", "--fill", "toon", "--no-hidden"},
+        {"--dash", "1 1", "--hidden-stroke", "0.1"},
+        {"--eye", "0,-20,5", "--focal", "50"},
+        {"--from", "0,-1,0", "--camera", "orthographic", "--frame", "9"},
+    };
+    for (const Names& options : used) {
+        Names words{"outline", kTeapotFile, "-o", "out.svg"};
+        words.insert(words.end(), options.begin(), options.end());
+        EXPECT_EQ(runBandvox(words, {.folder = folder.path()}).status, 0) << options.back();
+    }
 }
 
 TEST(Outline, RefusesBrokenFiles) {

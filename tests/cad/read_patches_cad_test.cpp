@@ -10,12 +10,16 @@
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRep_Builder.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopLoc_Location.hxx>
 #include <TopoDS_Compound.hxx>
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <gp_Trsf.hxx>
+#include <gp_Vec.hxx>
 #include <iterator>
 #include <numbers>
+#include <set>
 
 namespace bandvox::cad_test {
 namespace {
@@ -140,6 +144,55 @@ TEST(ReadCadPatches, MakesAnObjectOfEachSolid) {
     EXPECT_NEAR(solid.source->volume(), 2 * kPi, 1e-5);
 }
 
+// Two pairs of one bolt: the file has the bolt once, two places for it in a pair, and two for that.
+TEST(ReadCadPatches, NamesTheSamePartByItsInstances) {
+    const PartFolder folder;
+    const BRep_Builder builder;
+    const auto placed = [](const TopoDS_Shape& shape, const gp_Vec& by) {
+        gp_Trsf move;
+        move.SetTranslation(by);
+        return shape.Moved(TopLoc_Location(move));
+    };
+    const TopoDS_Shape bolt = cylinder(1, 1);
+    TopoDS_Compound pair, all;
+    builder.MakeCompound(pair);
+    builder.Add(pair, placed(bolt, {0, 0, 0}));
+    builder.Add(pair, placed(bolt, {5, 0, 0}));
+    builder.MakeCompound(all);
+    builder.Add(all, placed(pair, {0, 10, 0}));
+    builder.Add(all, placed(pair, {0, 20, 0}));
+    const auto path = folder.writeAssembly(all);
+    std::string text = textOf(path);
+    const std::string use = "NEXT_ASSEMBLY_USAGE_OCCURRENCE('";
+    const std::set<std::string> names{"bolt:1", "bolt:2", "pair:1", "pair:2"};
+    std::size_t at = 0;
+    for (const std::string& name : names) {
+        at = text.find(use, at);
+        ASSERT_NE(at, std::string::npos) << text;
+        const std::size_t id = text.find("','", at) + 3, end = text.find("',", id);
+        text.replace(id, end - id, name);
+        at = id;
+    }
+    EXPECT_EQ(text.find(use, at), std::string::npos);
+    writeText(path, text);
+    const PatchModel model = readPatches(path);
+    // Which of them the file has first is its writer's affair.
+    ASSERT_EQ(model.objects.size(), 4U);
+    std::set<std::string> found(model.objects.begin(), model.objects.end()), parts;
+    EXPECT_EQ(found.size(), 4U);
+    for (const std::string& object : model.objects) {
+        const std::size_t slash = object.find('/');
+        ASSERT_NE(slash, std::string::npos) << object;
+        parts.insert(object.substr(0, slash));
+        parts.insert(object.substr(slash + 1));
+    }
+    EXPECT_EQ(parts, names);
+    const PatchSolid solid = makePatchSolid("bolts", model);
+    EXPECT_NEAR(solid.source->volume(), 4 * kPi, 1e-5);
+    const openvdb::BBoxd box = solid.source->bounds();
+    EXPECT_NEAR(box.max()[1], 21, 1e-6);
+}
+
 // A model is the same wherever it comes in a scene.
 TEST(ReadCadPatches, AppendsModels) {
     const PartFolder folder;
@@ -189,6 +242,14 @@ TEST(ReadCadPatches, RefusesWhatIsNoWholeFile) {
         {".step", changed("CARTESIAN_POINT('',(0.,", "CARTESIAN_POINT('',(NAN,")},
         {".brep", changed("Curve2ds ", "Curve2ds 10000000")},
         {".brep", changed("\n1 0 0 ", "\n1 nan 0 ")},
+        {".brep", changed("\n1  1 0 0 ", "\n1  1 1e6 0 ")},
+        {".brep", changed("\n1  1 0 0 ", "\n1  1 1e300 0 ")},
+        {".brep", changed("\n1 0 0 ", "\n1 1e300 0 ")},
+        {".brep", changed("\n1 0 0 ", "\n1 -1e22 0 ")},
+        {".step", changed("CARTESIAN_POINT('',(0.,", "CARTESIAN_POINT('',(1.E300,")},
+        {".step", changed("CARTESIAN_POINT('',(0.,", "CARTESIAN_POINT('',(-2.E12,")},
+        {".iges", changed("123,1.,0.,-0.;", "123,1.D300,0.;")},
+        {".iges", changed("123,1.,0.,-0.;", "123,1.E300,0.,-0.;")},
         {".step", first(0)},
         {".step", first(0.5)},
         {".step", all("solid\nendsolid\n")},
@@ -213,6 +274,18 @@ TEST(ReadCadPatches, RefusesWhatIsNoWholeFile) {
     }
     std::string message;
     EXPECT_EQ(kindOf([&] { readPatches(folder / "none.step"); }, message), ErrorKind::Input);
+}
+
+// What stands in names is no number.
+TEST(ReadCadPatches, TakesNamesAsTheyAre) {
+    const PartFolder folder;
+    const auto path = folder.write(cylinder(1, 2), ".step");
+    std::string text = textOf(path);
+    const std::string solid = "MANIFOLD_SOLID_BREP('";
+    const std::size_t at = text.find(solid) + solid.size();
+    text.replace(at, text.find('\'', at) - at, "1E400 nan #77");
+    writeText(path, text);
+    EXPECT_EQ(readPatches(path).objects, std::vector<std::string>{"1E400 nan #77"});
 }
 
 TEST(ReadCadPatches, WarnsOfWhatIsNotKnown) {

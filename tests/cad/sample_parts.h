@@ -11,6 +11,8 @@
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepTools.hxx>
 #include <IGESControl_Writer.hxx>
+#include <Interface_Static.hxx>
+#include <STEPControl_Controller.hxx>
 #include <STEPControl_Writer.hxx>
 #include <TopoDS_Shape.hxx>
 #include <cstdlib>
@@ -53,6 +55,15 @@ class PartFolder {
             writer.Write(path.c_str());
         }
         std::cout.rdbuf(before);
+        return path;
+    }
+
+    /// Writes a compound as a STEP file with a product for each part and instances of them.
+    std::filesystem::path writeAssembly(const TopoDS_Shape& shape) const {
+        STEPControl_Controller::Init();
+        Interface_Static::SetIVal("write.step.assembly", 1);
+        const auto path = write(shape, ".step");
+        Interface_Static::SetIVal("write.step.assembly", 0);
         return path;
     }
 

@@ -218,6 +218,35 @@ def test_a_torus_has_suggestive_contours():
         bandvox.outline(torus, suggestive=-1)
 
 
+@pytest.mark.parametrize("arguments", [
+    {"hidden": False, "dash": "1 1"}, {"hidden": False, "hidden_stroke": 0.1},
+    {"hidden": False, "hidden_color": "#888888"}, {"camera": "orthographic", "focal": 50},
+    {"camera": "orthographic", "fov": 40}, {"camera": "orthographic", "aperture": 20},
+    {"eye": (0, -20, 5), "from_": (0, -1, 0)}, {"light": (0, 0, 1)},
+    {"isophotes": [0.5], "kinds": ["contour"]}, {"crease_angle": 10, "kinds": ["contour"]},
+    {"suggestive": 5}, {"tones": [0.5]}, {"shade": 0.3}, {"fill_colors": ["#123456"]},
+    {"fill": "flat", "tones": [0.5]},
+])
+def test_arguments_that_change_nothing_are_refused(arguments):
+    with pytest.raises(bandvox.UsageError, match="expected"):
+        bandvox.outline(TEAPOT, **arguments)
+
+
+def test_arguments_of_patches_are_refused_for_grids():
+    ball = bandvox.bandlimit("shape:sphere", resolution=16)
+    with pytest.raises(bandvox.UsageError, match="crease_angle is for patches"):
+        bandvox.outline(ball, crease_angle=10)
+    with pytest.raises(bandvox.UsageError, match="'suggestive' among the kinds"):
+        bandvox.outline(ball, suggestive=5, kinds=["contour"])
+
+
+def test_info_tells_of_patches(cylinder):
+    found = bandvox.info(TEAPOT)
+    assert found["patches"] == len(bandvox.Patches.read(TEAPOT)) and found["volume"] > 0
+    open_one = bandvox.info(cylinder)
+    assert not open_one["closed"] and open_one["bounds"]["max"] == pytest.approx([1, 1, 2])
+
+
 def area(points):
     """Within a closed path."""
     t = np.linspace(0, 1, 50, endpoint=False)[:, np.newaxis]
@@ -245,8 +274,9 @@ def test_what_is_between_lines_is_filled():
     radii = np.linalg.norm(light.loops[0][::3] - 50, axis=1) / 25
     np.testing.assert_allclose(radii, np.sqrt(0.75), atol=1e-2)
     assert {path.kind for path in toon.paths} == {"contour"}
-    for wrong in [{"fill": "plaid"}, {"fill_colors": ["red"]}, {"fill_colors": []},
-                  {"shade": 2}, {"fill": "toon", "tones": [0.5, 0.2]}]:
+    for wrong in [{"fill": "plaid"}, {"fill": "flat", "fill_colors": ["red"]},
+                  {"fill": "flat", "fill_colors": []}, {"fill": "toon", "shade": 2},
+                  {"fill": "toon", "tones": [0.5, 0.2]}]:
         with pytest.raises(bandvox.UsageError):
             bandvox.outline(ball, **wrong)
 

@@ -75,6 +75,31 @@ TEST(BsplinePatch, KeepsToItsRange) {
     for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(p[c], q[c], 1e-12);
 }
 
+TEST(BsplinePatch, TakesKnotsThatNearlyAreOneForOne) {
+    BsplineNet exact = sampleNet(), near = sampleNet();
+    exact.knots[1] = {0, 0, 0, 1, 1, 3, 3, 3};
+    near.knots[1] = {0, 1e-13, 2e-13, 1, 1 + 1e-13, 3 - 1e-12, 3, 3 + 1e-13};
+    const std::vector<BezierPatch> expected = bezierPatches(exact), found = bezierPatches(near);
+    ASSERT_EQ(expected.size(), 2U * 2U);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        for (std::size_t i = 0; i < found[k].control.size(); ++i) {
+            for (std::size_t c = 0; c < 4; ++c) {
+                EXPECT_NEAR(found[k].control[i][c], expected[k].control[i][c], 1e-11);
+            }
+        }
+    }
+    // What is a little farther apart are two.
+    near.knots[1] = {0, 0, 0, 1, 1 + 1e-6, 3, 3, 3};
+    EXPECT_EQ(bezierPatches(near).size(), 2U * 3U);
+}
+
+TEST(BsplinePatch, LeavesOutWhatARangeHardlyReaches) {
+    BsplineNet net = sampleNet();
+    net.range = {{{1, 1.5 + 1e-12}, {1 - 1e-12, 2.5}}};
+    EXPECT_EQ(bezierPatches(net).size(), 1U);
+}
+
 TEST(BsplinePatch, RefusesCountsThatDoNotMatch) {
     BsplineNet net = sampleNet();
     net.knots[0].pop_back();

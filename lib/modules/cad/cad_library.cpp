@@ -4,6 +4,7 @@
 
 #include "core/letter_case.h"
 #include "face_reader.h"
+#include "instance_names.h"
 
 #include <bandvox/core/error.h>
 
@@ -28,6 +29,8 @@
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <cmath>
+#include <fstream>
+#include <ios>
 #include <mutex>
 #include <string>
 
@@ -84,7 +87,15 @@ class OpenCascade final : public CadLibrary {
     static CadShape readBrep(const std::filesystem::path& path, const InterruptCheck& check) {
         TopoDS_Shape shape;
         const BRep_Builder builder;
-        if (!BRepTools::Read(shape, path.c_str(), builder) || shape.IsNull()) {
+        std::ifstream stream(path, std::ios::binary);
+        // What is no number where one is due would be waited for without end.
+        stream.exceptions(std::ios::failbit | std::ios::badbit);
+        try {
+            BRepTools::Read(shape, stream, builder);
+        } catch (const std::ios_base::failure&) {
+            shape.Nullify();
+        }
+        if (shape.IsNull()) {
             throw Error(ErrorKind::Input, "is malformed; expected a whole BREP file");
         }
         return facesOf(
@@ -122,9 +133,12 @@ class OpenCascade final : public CadLibrary {
         reader.TransferRoots();
         const TopoDS_Shape shape = reader.OneShape();
         if (shape.IsNull()) return {};
+        const Handle(XSControl_TransferReader) transfer = reader.WS()->TransferReader();
+        const InstanceNames instances(transfer->TransientProcess(), shape);
         const auto nameOf = [&](const TopoDS_Shape& part) {
+            if (std::string name = instances.nameOf(part); !name.empty()) return name;
             const auto item = Handle(StepRepr_RepresentationItem)::DownCast(
-                reader.WS()->TransferReader()->EntityFromShapeResult(part, 1));
+                transfer->EntityFromShapeResult(part, 1));
             if (item.IsNull() || item->Name().IsNull()) return std::string();
             return std::string(item->Name()->ToCString());
         };

@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -37,9 +38,10 @@ Handle(Geom2d_Curve) basisOf(Handle(Geom2d_Curve) curve) {
     }
 }
 
-// An edge's curve in the surface's own parameters, as polynomials in the edge's parameter.
-void fitPieces(const Handle(Geom2d_Curve) & curve, double first, double last,
-               std::vector<CadPiece>& pieces) {
+// An edge's curve in the surface's own parameters, as polynomials in the edge's parameter. Returns
+// how far they are from it, as a part of the larger coordinates.
+double fitPieces(const Handle(Geom2d_Curve) & curve, double first, double last,
+                 std::vector<CadPiece>& pieces) {
     const CurveFunction function = [&](double t) {
         const gp_Pnt2d p = curve->Value(t);
         return std::array<double, 2>{p.X(), p.Y()};
@@ -59,10 +61,10 @@ void fitPieces(const Handle(Geom2d_Curve) & curve, double first, double last,
         size = std::max({size, std::abs(p[0]), std::abs(p[1])});
     }
     const double least = 1e-9 * (last - first);
-    double from = first;
+    double from = first, off = 0;
     for (const double to : stops) {
         if (to - from < least || (to < last && last - to < least)) continue;
-        fitCurve(function, from, to, kFitTolerance * size, pieces);
+        off = std::max(off, fitCurve(function, from, to, kFitTolerance * size, pieces));
         from = to;
     }
     for (CadPiece& piece : pieces) {
@@ -71,6 +73,7 @@ void fitPieces(const Handle(Geom2d_Curve) & curve, double first, double last,
     }
     pieces.front().from = 0;
     pieces.back().to = 1;
+    return off / size;
 }
 
 void expand(ParameterBox& box, const ParameterCurve& curve) {
@@ -81,9 +84,11 @@ void expand(ParameterBox& box, const ParameterCurve& curve) {
     }
 }
 
-// Goes from the surface's parameters to those of its B-spline.
-void toSpline(const NurbsSurface& surface, std::vector<CadPiece>& pieces) {
+// Goes from the surface's parameters to those of its B-spline. Returns how far off the curves may
+// be by that, as a part of the face's parameters.
+double toSpline(const NurbsSurface& surface, std::vector<CadPiece>& pieces) {
     std::vector<CadPiece> result;
+    double off = 0;
     for (CadPiece& piece : pieces) {
         if (surface.keepsParameters()) {
             for (auto& p : piece.curve) p = surface.placeOf(p);
@@ -105,7 +110,7 @@ void toSpline(const NurbsSurface& surface, std::vector<CadPiece>& pieces) {
             constexpr double kShortest = 1e-9;
             if (to - from < kShortest || (to < 1 && 1 - to < kShortest)) continue;
             const std::size_t before = result.size();
-            fitCurve(function, from, to, kFitTolerance, result);
+            off = std::max(off, fitCurve(function, from, to, kFitTolerance, result));
             for (std::size_t k = before; k < result.size(); ++k) {
                 result[k].from = piece.from + result[k].from * (piece.to - piece.from);
                 result[k].to = piece.from + result[k].to * (piece.to - piece.from);
@@ -114,6 +119,7 @@ void toSpline(const NurbsSurface& surface, std::vector<CadPiece>& pieces) {
         }
     }
     pieces = std::move(result);
+    return off;
 }
 
 std::vector<TopoDS_Edge> edgesOf(const TopoDS_Wire& wire, const TopoDS_Face& face) {
@@ -153,7 +159,15 @@ class FaceReader {
         }
     }
 
-    CadShape take() { return std::move(mShape); }
+    CadShape take() {
+        if (mRoughCurves > 0) {
+            std::ostringstream warning;
+            warning << "curves of edges turn too often to be followed to the end: " << mRoughCurves
+                    << "; they are up to " << mMostOff << " of their faces' sizes off";
+            mShape.warnings.push_back(warning.str());
+        }
+        return std::move(mShape);
+    }
 
   private:
     void addObject(const TopoDS_Shape& shape) {
@@ -194,13 +208,13 @@ class FaceReader {
         const NurbsSurface nurbs(surface, box);
         made.net = nurbs.net();
         for (auto& wire : made.wires) {
-            for (CadEdgeUse& use : wire) toSpline(nurbs, use.pieces);
+            for (CadEdgeUse& use : wire) noteOff(toSpline(nurbs, use.pieces));
         }
         mShape.faces.push_back(std::move(made));
     }
 
     std::vector<CadEdgeUse> wireOf(const TopoDS_Wire& wire, const TopoDS_Face& face,
-                                   ParameterBox& box) const {
+                                   ParameterBox& box) {
         std::vector<CadEdgeUse> uses;
         for (const TopoDS_Edge& edge : edgesOf(wire, face)) {
             double first = 0, last = 0;
@@ -214,11 +228,17 @@ class FaceReader {
             CadEdgeUse use;
             use.edge = BRep_Tool::Degenerated(edge) ? -1 : mEdges.FindIndex(edge) - 1;
             use.isReversed = edge.Orientation() == TopAbs_REVERSED;
-            fitPieces(curve, first, last, use.pieces);
+            noteOff(fitPieces(curve, first, last, use.pieces));
             for (const CadPiece& piece : use.pieces) expand(box, piece.curve);
             uses.push_back(std::move(use));
         }
         return uses;
+    }
+
+    void noteOff(double off) {
+        constexpr double kNoticeable = 1e-6;
+        if (off > kNoticeable) ++mRoughCurves;
+        mMostOff = std::max(mMostOff, off);
     }
 
     const ShapeNames& mNames;
@@ -226,6 +246,8 @@ class FaceReader {
     TopTools_IndexedMapOfShape mEdges;
     CadShape mShape;
     int mShell = 0;
+    int mRoughCurves = 0;
+    double mMostOff = 0;
 };
 
 }  // namespace

@@ -2,15 +2,21 @@
 
 #include "source/parameter_curve.h"
 
+#include <bandvox/core/error.h>
+
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <utility>
 
 namespace bandvox {
 namespace {
 
-constexpr int kMostHalvings = 10;
+constexpr std::size_t kMostPieces = 1024;
+constexpr double kFarthest = 1e100;  // sums of such places are finite
+constexpr double kShortest = 1e-7;   // of the whole: what is shorter nobody sees
 
 /// Interpolation at the extrema of a Chebyshev polynomial, in Bernstein's basis.
 class Interpolation {
@@ -84,42 +90,71 @@ class Interpolation {
     std::vector<std::vector<double>> mInverse;
 };
 
-bool isNear(const ParameterCurve& curve, const CurveFunction& function, double from, double to,
-            double tolerance) {
-    constexpr int kSamples = 13;  // none of them a node
+// A polynomial for a part of the curve, and how far it is from it.
+struct Fit {
+    ParameterCurve curve;
+    double from = 0, to = 0;
+    double off = 0;
+};
+
+// How far a polynomial is from the curve at some places, none of them a node.
+double offBetween(const ParameterCurve& curve, const CurveFunction& function, double from,
+                  double to) {
+    constexpr int kSamples = 13;
+    double off = 0;
     for (int k = 1; k < kSamples; ++k) {
         const double t = (k + 0.137) / (kSamples + 0.31);
         const auto a = jetAt(curve, t).place, b = function(from + t * (to - from));
-        if (std::abs(a[0] - b[0]) > tolerance || std::abs(a[1] - b[1]) > tolerance) return false;
+        off = std::max({off, std::abs(a[0] - b[0]), std::abs(a[1] - b[1])});
     }
-    return true;
+    return off;
 }
 
-void fitPart(const CurveFunction& function, double from, double to, double tolerance, int depth,
-             std::vector<CadPiece>& pieces) {
+// Of the lowest degree that is near enough, else of the one that is nearest.
+Fit fitOf(const CurveFunction& function, double from, double to, double tolerance) {
     static const std::array<Interpolation, 3> rising{Interpolation(1), Interpolation(3),
                                                      Interpolation(9)};
-    ParameterCurve curve;
+    Fit best{.off = std::numeric_limits<double>::infinity()};
     for (const Interpolation& interpolation : rising) {
-        curve = interpolation.curveOf(function, from, to);
-        if (!isNear(curve, function, from, to, tolerance)) continue;
-        pieces.push_back({std::move(curve), from, to});
-        return;
+        Fit fit{interpolation.curveOf(function, from, to), from, to};
+        fit.off = offBetween(fit.curve, function, from, to);
+        if (fit.off < best.off) best = std::move(fit);
+        if (best.off <= tolerance) break;
     }
-    if (depth == kMostHalvings) {
-        pieces.push_back({std::move(curve), from, to});
-        return;
-    }
-    const double middle = 0.5 * (from + to);
-    fitPart(function, from, middle, tolerance, depth + 1, pieces);
-    fitPart(function, middle, to, tolerance, depth + 1, pieces);
+    return best;
 }
 
 }  // namespace
 
-void fitCurve(const CurveFunction& function, double from, double to, double tolerance,
-              std::vector<CadPiece>& pieces) {
-    fitPart(function, from, to, tolerance, 0, pieces);
+double fitCurve(const CurveFunction& function, double from, double to, double tolerance,
+                std::vector<CadPiece>& pieces) {
+    const CurveFunction finite = [&](double t) {
+        const std::array<double, 2> place = function(t);
+        if (std::abs(place[0]) < kFarthest && std::abs(place[1]) < kFarthest) return place;
+        throw Error(ErrorKind::Input,
+                    "has an edge with a place that is not finite; expected numbers below 1e100");
+    };
+    const double shortest = kShortest * (to - from);
+    std::vector<Fit> fits{fitOf(finite, from, to, tolerance)};
+    // Where it turns sharply halves come down to that place, however short.
+    while (fits.size() < kMostPieces) {
+        Fit* worst = nullptr;
+        for (Fit& fit : fits) {
+            if (!(fit.off > tolerance) || fit.to - fit.from < shortest) continue;
+            if (!worst || fit.off > worst->off) worst = &fit;
+        }
+        if (!worst) break;
+        const double end = worst->to, middle = 0.5 * (worst->from + end);
+        *worst = fitOf(finite, worst->from, middle, tolerance);
+        fits.push_back(fitOf(finite, middle, end, tolerance));
+    }
+    std::sort(fits.begin(), fits.end(), [](const Fit& a, const Fit& b) { return a.from < b.from; });
+    double off = 0;
+    for (Fit& fit : fits) {
+        off = std::max(off, fit.off);
+        pieces.push_back({std::move(fit.curve), fit.from, fit.to});
+    }
+    return off;
 }
 
 }  // namespace bandvox

@@ -1,3 +1,5 @@
+#include "source/near_knots.h"
+
 #include <bandvox/core/error.h>
 #include <bandvox/source/bspline_patch.h>
 
@@ -44,13 +46,15 @@ struct Span {
 std::vector<Span> spansOf(const BsplineNet& net, std::size_t axis) {
     const auto& knots = net.knots[axis];
     const auto [low, high] = net.range[axis];
+    const double least = kLeastSpan * (knots[static_cast<std::size_t>(net.count[axis])] -
+                                       knots[static_cast<std::size_t>(net.degree[axis])]);
     std::vector<Span> spans;
     for (int k = net.degree[axis]; k < net.count[axis]; ++k) {
         Span span{k, {knots[static_cast<std::size_t>(k)], knots[static_cast<std::size_t>(k) + 1]}};
         if (low < high) {
             span.range = {std::max(span.range[0], low), std::min(span.range[1], high)};
         }
-        if (span.range[0] < span.range[1]) spans.push_back(span);
+        if (span.range[1] - span.range[0] > least) spans.push_back(span);
     }
     return spans;
 }
@@ -111,8 +115,10 @@ BezierPatch patchOf(const BsplineNet& net, const Span& across, const Span& along
 
 }  // namespace
 
-std::vector<BezierPatch> bezierPatches(const BsplineNet& net) {
-    requireValid(net);
+std::vector<BezierPatch> bezierPatches(const BsplineNet& given) {
+    requireValid(given);
+    BsplineNet net = given;
+    joinNearKnots(net);
     std::vector<BezierPatch> patches;
     const std::vector<Span> along = spansOf(net, 1);
     for (const Span& across : spansOf(net, 0)) {

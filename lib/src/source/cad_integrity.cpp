@@ -3,11 +3,15 @@
 #include "core/letter_case.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace bandvox {
@@ -17,6 +21,33 @@ bool isNoNumber(std::string_view word) {
     if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
     const std::string lower = inLowerCase(std::string(word.substr(0, 16)));
     return lower == "nan" || lower == "inf" || lower == "infinity";
+}
+
+// Lengths, in any unit, beyond which Open CASCADE crashes, or takes for good: it works to 1e-7.
+constexpr double kFarthest = 1e12;
+
+// Reads the number at the beginning of a text, if there is one that is too large; returns how long
+// it is, 0 if there is none. Fortran's exponents have a D.
+std::size_t requireNumberInRange(const FileContents& file, std::string_view text) {
+    const std::size_t sign = text.starts_with('+') ? 1 : 0;
+    std::array<char, 64> digits{};
+    const std::size_t count = std::min(digits.size(), text.size() - sign);
+    std::replace_copy_if(
+        text.begin() + static_cast<std::ptrdiff_t>(sign),
+        text.begin() + static_cast<std::ptrdiff_t>(sign + count), digits.begin(),
+        [](char c) { return c == 'D'; }, 'E');
+    double value = 0;
+    const auto [end, status] = std::from_chars(digits.data(), digits.data() + count, value);
+    if (status == std::errc::invalid_argument) return 0;
+    const auto length = sign + static_cast<std::size_t>(end - digits.data());
+    const std::string_view number = text.substr(0, length);
+    const bool isSmall = status == std::errc::result_out_of_range &&
+                         number.find('-', sign + 1) != std::string_view::npos;
+    const bool isFar = status == std::errc::result_out_of_range || !(std::abs(value) <= kFarthest);
+    if (isFar && !isSmall) {
+        file.fail("holds the number " + std::string(number) + "; expected none beyond 1e12");
+    }
+    return length;
 }
 
 [[noreturn]] void failAtWord(const FileContents& file, std::string_view word) {
@@ -52,6 +83,9 @@ void requireSoundStep(const FileContents& file) {
             const std::size_t next = text.find_first_not_of(" \t\r\n", i);
             const bool isDefined = next != std::string_view::npos && text[next] == '=';
             (isDefined ? defined : used).push_back(name);
+        } else if (std::isdigit(static_cast<unsigned char>(c)) != 0) {
+            const std::size_t length = requireNumberInRange(file, text.substr(i, 64));
+            i += std::max<std::size_t>(length, 1);
         } else if (isLetter(c)) {
             const std::size_t begin = i;
             while (i < text.size() && isLetter(text[i])) ++i;
@@ -88,6 +122,7 @@ void requireSoundBrep(const FileContents& file) {
         const std::size_t end = std::min(text.find_first_of(kBlanks, i), text.size());
         const std::string_view word = text.substr(i, end - i);
         if (isNoNumber(word)) failAtWord(file, word);
+        requireNumberInRange(file, word);
         if (isList(before)) {
             std::int64_t count = 0;
             std::from_chars(word.data(), word.data() + word.size(), count);
@@ -113,6 +148,40 @@ void requireSoundBrep(const FileContents& file) {
     }
 }
 
+// The parameters of an IGES file are what stands in columns 1 to 64 of lines with P in column 73;
+// Open CASCADE also takes damaged lines for such.
+void requireIgesNumbersInRange(const FileContents& file) {
+    constexpr std::size_t kColumns = 64, kLetter = 72;
+    const std::string_view bytes(file.bytes);
+    std::string text;
+    for (std::size_t begin = 0; begin < bytes.size();) {
+        const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
+        const std::string_view line = bytes.substr(begin, end - begin);
+        const char letter = line.size() > kLetter ? line[kLetter] : 'P';
+        if (std::string_view("SGDT").find(letter) == std::string_view::npos) {
+            text += line.substr(0, kColumns);
+        }
+        begin = end + 1;
+    }
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t begin = std::min(text.find_first_not_of(' ', i), text.size());
+        std::size_t end = std::min(text.find_first_of(",;", begin), text.size());
+        const std::string_view word = std::string_view(text).substr(begin, end - begin);
+        // As many characters as 5HTHESE has before its H may be anything.
+        std::size_t count = 0;
+        const char* const after =
+            std::from_chars(word.data(), word.data() + word.size(), count).ptr;
+        if (after != word.data() + word.size() && after != word.data() && *after == 'H') {
+            const std::size_t string = begin + static_cast<std::size_t>(after - word.data()) + 1;
+            end = std::min(text.find_first_of(",;", std::min(string + count, text.size())),
+                           text.size());
+        } else {
+            requireNumberInRange(file, word);
+        }
+        i = end + 1;
+    }
+}
+
 void requireWholeIges(const FileContents& file) {
     const std::string& bytes = file.bytes;
     // Column 73 has the section's letter: Start, or Compressed or Binary, which are rare.
@@ -135,6 +204,7 @@ void requireSoundCadFile(const FileContents& file) {
     if (extension == ".step" || extension == ".stp") return requireSoundStep(file);
     if (extension == ".brep") return requireSoundBrep(file);
     requireWholeIges(file);
+    requireIgesNumbersInRange(file);
 }
 
 }  // namespace bandvox

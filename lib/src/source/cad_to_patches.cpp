@@ -1,5 +1,6 @@
 #include "source/cad_to_patches.h"
 
+#include "source/near_knots.h"
 #include "source/parameter_curve.h"
 
 #include <algorithm>
@@ -93,6 +94,7 @@ class FacesToPatches {
 
     void add(CadFace face) {
         if (face.isReversed) turn(face);
+        joinNearKnots(face.net);
         mFirst = static_cast<int>(mModel.patches.size());
         mLines = {linesOf(face.net, 0), linesOf(face.net, 1)};
         addPatches(face);

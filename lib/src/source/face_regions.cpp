@@ -55,7 +55,8 @@ FaceRegions::FaceRegions(const FaceTopology& topology)
 }
 
 std::size_t FaceRegions::rowOf(double v) {
-    return static_cast<std::size_t>(std::clamp(std::floor(v * kRows), 0.0, kRows - 1));
+    if (!(v > 0)) return 0;  // NaN, too
+    return static_cast<std::size_t>(std::min(v * kRows, kRows - 1));
 }
 
 const FaceRegions::Region* FaceRegions::regionOf(int patch) const {

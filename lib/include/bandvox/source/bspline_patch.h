@@ -22,7 +22,9 @@ struct BsplineNet {
 
 /// The Bézier patches of a B-spline surface, one for each rectangle of its knots, which are the
 /// surface exactly, but for rounding (L. Ramshaw, "Blossoming: a connect-the-dots approach to
-/// splines", 1987). Throws Error(ErrorKind::Usage) if counts or knots are not as above.
+/// splines", 1987). Knots nearer to each other than 1e-9 of the range of parameters are one knot,
+/// of their number's multiplicity; what `range` leaves between two is left out if it is as narrow.
+/// Throws Error(ErrorKind::Usage) if counts or knots are not as above.
 std::vector<BezierPatch> bezierPatches(const BsplineNet& net);
 
 }  // namespace bandvox

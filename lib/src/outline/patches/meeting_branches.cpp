@@ -1,6 +1,7 @@
 #include "outline/patches/meeting_branches.h"
 
 #include "outline/patches/meeting_regions.h"
+#include "outline/patches/meeting_sides.h"
 #include "outline/patches/patch_cell.h"
 
 #include <bandvox/core/parallel.h>
@@ -23,8 +24,9 @@ class PairWork {
     PairWork(std::span<const ViewPatch> seen, const PatchCell& a, const PatchCell& b, double size)
         : mSize(size),
           mIsSelf(a.patch == b.patch),
+          mShares(shareCorner(a, b, kSamePoint * size)),
           mMarch(seen[static_cast<std::size_t>(a.patch)], seen[static_cast<std::size_t>(b.patch)],
-                 shareCorner(a, b, kSamePoint * size), size) {}
+                 mShares, size) {}
 
     void search(const PatchCell& a, const PatchCell& b, std::vector<MeetingBranch>& branches) {
         const auto regions = meetingRegions(a, b, kLeastRegion * mSize, kSamePoint * mSize);
@@ -61,6 +63,10 @@ class PairWork {
         for (std::size_t k = 0; k < 4; ++k) {
             for (const double border : {0.0, 1.0}) {
                 if (border == 0 ? low[k] != 0 : low[k] + sizes[k] != 1) continue;
+                if (!mShares) {
+                    seedPassages(region, k, border, branches);
+                    continue;
+                }
                 // An arc that cuts a side twice has its places near both ends.
                 for (const double along : {0.1, 0.5, 0.9}) {
                     MeetingPlace guess;
@@ -70,6 +76,31 @@ class PairWork {
                     const auto seed = mMarch.settledOnSide(guess, k);
                     if (seed && isNear(region, *seed)) add(*seed, branches);
                 }
+            }
+        }
+    }
+
+    // However small what is between two passages of a side.
+    void seedPassages(const MeetingRegion& region, std::size_t k, double border,
+                      std::vector<MeetingBranch>& branches) {
+        const bool isFirst = k < 2;
+        const int side = static_cast<int>(k % 2) * 2 + (border == 0 ? 0 : 1);
+        const std::size_t other = isFirst ? 2 : 0;
+        for (const SidePassage& passage :
+             sidePassages(isFirst ? *region.cellA : *region.cellB, side,
+                          isFirst ? *region.cellB : *region.cellA, kLeastRegion * mSize)) {
+            MeetingPlace guess;
+            guess[k] = border;
+            guess[k ^ 1U] = passage.along;
+            guess[other] = passage.s;
+            guess[other + 1] = passage.t;
+            const auto seed = mMarch.settledOnSide(guess, k);
+            const auto isBeside = [&](std::size_t i, double size) {
+                return std::abs((*seed)[i] - guess[i]) < size;
+            };
+            if (seed && isBeside(k ^ 1U, passage.sizeA) && isBeside(other, passage.sizeB) &&
+                isBeside(other + 1, passage.sizeB)) {
+                add(*seed, branches);
             }
         }
     }
@@ -84,7 +115,7 @@ class PairWork {
     }
 
     double mSize;
-    bool mIsSelf;
+    bool mIsSelf, mShares;
     MeetingMarch mMarch;
 };
 

@@ -72,7 +72,7 @@ class RegionSearch {
         if (relation == CellRelation::Apart) return;
         const bool isSimple = relation == CellRelation::Transversal && isFlat(*a) && isFlat(*b);
         if (isSimple || isLast || (isSmall(*a) && isSmall(*b))) {
-            mRegions.push_back({a->u0, a->v0, a->size, b->u0, b->v0, b->size});
+            mRegions.push_back({a->u0, a->v0, a->size, b->u0, b->v0, b->size, a, b});
             return;
         }
         // Cells that share a side have to be of the same size to know it.

@@ -2,6 +2,7 @@
 
 #include "outline/patches/patch_cell.h"
 
+#include <memory>
 #include <vector>
 
 namespace bandvox {
@@ -10,6 +11,7 @@ namespace bandvox {
 struct MeetingRegion {
     double u0 = 0, v0 = 0, sizeA = 1;  ///< of the first patch
     double s0 = 0, t0 = 0, sizeB = 1;  ///< of the second one
+    std::shared_ptr<const PatchCell> cellA, cellB;
 };
 
 /// Where two patches may meet, but for the sides and corners that they share, or where one meets
