@@ -209,7 +209,7 @@ std::vector<double> readCosines(const CommandLine& line, const std::string& opti
 // An option that changes nothing is taken for a mistake. `use`: what it is for, and what is
 // expected.
 void requireUsed(const CommandLine& line, const char* option, bool isUsed, const char* use) {
-    if (!line.has(option) || isUsed) return;
+    if (!line.isAsked(option) || isUsed) return;
     throw Error(ErrorKind::Usage, std::string("--") + option + " is for " + use);
 }
 

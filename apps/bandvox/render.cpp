@@ -94,7 +94,6 @@ RenderRequest parseRender(const CommandLine& line) {
     for (const OptionEntry& entry : pictureEntries()) names.push_back(entry.name);
     request.scene = readScene(line, names);
     request.picture = readPictureOptions(request.scene.picture);
-    requireUsedCamera(line, request.picture.camera);
     request.channels = readChannels(request.scene.picture);
     if (request.scene.picture.has("channels") && extensionOf(request.output) != ".exr") {
         throw Error(ErrorKind::Usage, "channels are chosen of an .exr, and '" + request.output +

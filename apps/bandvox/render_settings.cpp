@@ -72,14 +72,14 @@ CameraOptions readCamera(const OptionValues& values, double aspect) {
 }
 
 void requireUsedCamera(const OptionValues& values, const CameraOptions& camera) {
-    if (values.has("from") && camera.eye) {
+    if (values.isAsked("from") && camera.eye) {
         values.fail("from",
                     "either this direction to an eye that is chosen, or an eye, which is "
                     "given too");
     }
     if (camera.projection != CameraOptions::Projection::Orthographic) return;
     for (const char* const lens : {"focal", "aperture", "fov"}) {
-        if (values.has(lens)) {
+        if (values.isAsked(lens)) {
             values.fail(lens, "a perspective view beside it; --frame is the width of this one");
         }
     }

@@ -4,6 +4,7 @@
 #include "bindings.h"
 #include "choices.h"
 #include "grid_object.h"
+#include "words.h"
 
 #include <bandvox/core/atomic_file.h>
 #include <bandvox/core/error.h>
@@ -65,7 +66,7 @@ openvdb::BoolGrid::Ptr truthsOf(const openvdb::GridBase::Ptr& grid) {
 
 void writeGridFiles(const std::filesystem::path& path, openvdb::GridCPtrVec grids,
                     const VdbWriteOptions& options, Progress& progress) {
-    const std::string ending = path.extension().string();
+    const std::string ending = app::lowerCase(path.extension().string());
     if (ending != ".vdb" && ending != ".usda") {
         throw Error(ErrorKind::Usage,
                     "path is '" + path.string() + "'; expected a .vdb or a .usda file");
@@ -83,6 +84,7 @@ void writeGridFiles(const std::filesystem::path& path, openvdb::GridCPtrVec grid
     AtomicFile volume(std::filesystem::path(path).replace_extension(".vdb"));
     writeUsdVolume(usd, volume.target().filename().string(), grids, options.half);
     writeVdb(volume, grids, options, progress);
+    progress.throwIfInterrupted();
     // The volume gets its name first: nothing ever refers to one that is not there.
     volume.commit();
     usd.commit();

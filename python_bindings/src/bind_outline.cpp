@@ -117,7 +117,8 @@ StrokeOptions checked(const StrokeOptions& stroke) {
 
 /// Arguments that some drawings have no use for; nothing was given where there is no value.
 struct OptionalArguments {
-    std::optional<double> creaseAngle, hiddenWidth, suggestive, shade;
+    std::optional<double> creaseAngle, hiddenWidth, suggestive, shade, voxelSize, cutoff, order;
+    std::optional<int> resolution;
     std::optional<std::string> hiddenColor, dash;
     std::optional<std::array<double, 3>> light;
     std::optional<std::vector<double>> tones;
@@ -248,6 +249,12 @@ void addSources(const py::object& source, const OptionalArguments& given, DrawnS
     }
     requireUsed(given.suggestive.has_value(), sources.hasVolumes(),
                 "suggestive contours are of grids and meshes, and there is none; expected one");
+    requireUsed(given.resolution || given.voxelSize || given.cutoff || given.order,
+                !sources.solidFiles.empty(),
+                "resolution, voxel_size, cutoff and order are for mesh files and shapes, and there "
+                "is none; expected one");
+    requireUsed(given.voxelSize.has_value(), !given.resolution,
+                "resolution and voxel_size are both the size of voxels; expected one of them");
     requireUsed(given.creaseAngle.has_value(),
                 !sources.patches.patches.empty() || !sources.patchFiles.empty(),
                 "crease_angle is for patches, and there are none; expected some");
@@ -385,7 +392,6 @@ void bindOutline(py::module_& module) {
     bindDrawing(module);
     const OutlineOptions standard;
     const StrokeOptions stroke;
-    const DensityOptions density;
     module.def(
         "outline",
         [](const py::object& source, const py::object& page, const std::optional<double>& margin,
@@ -397,15 +403,17 @@ void bindOutline(py::module_& module) {
            const py::object& cameraFile, const std::optional<double>& focal,
            const std::optional<double>& aperture, const std::optional<double>& fov,
            const std::optional<double>& frame, const std::optional<std::string>& grid,
-           const py::object& iso, int resolution, double voxelSize, double cutoff, double order,
-           const std::vector<double>& isophotes, const std::optional<double>& suggestive,
+           const py::object& iso, const std::optional<int>& resolution,
+           const std::optional<double>& voxelSize, const std::optional<double>& cutoff,
+           const std::optional<double>& order, const std::vector<double>& isophotes,
+           const std::optional<double>& suggestive,
            const std::optional<std::array<double, 3>>& light, const std::string& fill,
            const std::optional<std::vector<double>>& tones,
            const std::optional<std::vector<std::string>>& fillColors,
            const std::optional<double>& shade, int threads, const py::object& progress) {
-            const OptionalArguments given{creaseAngle, hiddenWidth, suggestive,
-                                          shade,       hiddenColor, dash,
-                                          light,       tones,       fillColors};
+            const OptionalArguments given{
+                creaseAngle, hiddenWidth, suggestive, shade, voxelSize, cutoff,    order,
+                resolution,  hiddenColor, dash,       light, tones,     fillColors};
             OutlineOptions options;
             options.isophotes = isophotes;
             options.suggestive = suggestive;
@@ -434,9 +442,11 @@ void bindOutline(py::module_& module) {
             DrawnSources sources;
             sources.grid = grid;
             sources.iso = isoArgumentOf(iso);
-            sources.density.resolution = resolution;
-            sources.density.voxelSize = voxelSize;
-            sources.density.filter = ExponentialFilter{order, cutoff};
+            DensityOptions& density = sources.density;
+            density.resolution = resolution.value_or(density.resolution);
+            density.voxelSize = voxelSize.value_or(density.voxelSize);
+            density.filter = ExponentialFilter{order.value_or(density.filter.order),
+                                               cutoff.value_or(density.filter.cutoff)};
             addSources(source, given, sources);
             return draw(std::move(sources), options, isKept,
                         {width, hiddenWidth.value_or(look.hiddenWidth), std::move(color),
@@ -456,8 +466,8 @@ void bindOutline(py::module_& module) {
         py::arg("camera_file") = py::none(), py::arg("focal") = py::none(),
         py::arg("aperture") = py::none(), py::arg("fov") = py::none(),
         py::arg("frame") = py::none(), py::arg("grid") = py::none(), py::arg("iso") = py::none(),
-        py::arg("resolution") = density.resolution, py::arg("voxel_size") = 0.0,
-        py::arg("cutoff") = density.filter.cutoff, py::arg("order") = density.filter.order,
+        py::arg("resolution") = py::none(), py::arg("voxel_size") = py::none(),
+        py::arg("cutoff") = py::none(), py::arg("order") = py::none(),
         py::arg("isophotes") = standard.isophotes, py::arg("suggestive") = py::none(),
         py::arg("light") = py::none(), py::arg("fill") = "none", py::arg("tones") = py::none(),
         py::arg("fill_colors") = py::none(), py::arg("shade") = py::none(), py::arg("threads") = 0,
@@ -468,18 +478,20 @@ source: Patches, a file of them (.bpt, .obj, .step, .iges or .brep), a Grid, a .
 file, 'shape:NAME', or a list of such. grid: the name of the grid of a .vdb file, 'density' or the
 only one of floats if it is None. iso: the value of grids that is the surface, as of to_mesh.
 resolution, voxel_size, cutoff, order: of the density that is made of a mesh or a shape, as of
-bandlimit; fewer voxels leave small detail away. isophotes: lines where the cosine of the angle
+bandlimit, 256 voxels, 0.16 and 2 if they are None; fewer voxels leave small detail away. isophotes: lines where the cosine of the angle
 between the normal and the direction to the light is one of these; light: along the camera's right,
 up and back, (-0.4, 0.7, 0.8) if there is none. suggestive: of grids, draw suggestive contours of at
 least this strength, as in 20. fill: what is between lines, 'none', 'flat', a colour for each
 object, or 'toon', tones of it; tones: cosines of that angle at which they change, ascending,
-(0.25, 0.7) if there are none; fill_colors: of the objects, one after the other, '#rrggbb'; shade:
+(0.25, 0.7) if there are none; fill_colors: of the objects, one after the other, '#rrggbb', else '#f2d399', '#a8c8dc',
+'#c9dba4', '#e3b1a6' and '#cdbfe0'; shade:
 the darkest tone, as a part of the colour, 0 to 1, else 0.45. page: width and height, millimetres,
 or 'A3', 'A4', 'A5' or 'letter', also with '-landscape'; margin: what stays free. tolerance: how far
 lines may be from the true ones, millimetres. crease_angle: patches that meet at more, else at more
 than 5, have a line between, degrees, 0 to 180. kinds: which lines are drawn. hidden: keep those
-behind something. stroke, hidden_stroke: widths, millimetres; stroke_color, hidden_color: as in CSS;
-dash: of hidden lines. The camera's words are those of render. Raises UsageError for arguments that
+behind something. stroke: width of lines, millimetres; stroke_color: as in CSS; hidden_stroke,
+hidden_color, dash: the same of those that are hidden, else 0.18 and '#808080', and '1.2 0.8',
+lengths of line and gap. The camera's words are those of render. Raises UsageError for arguments that
 change nothing of this drawing, ResultError if nothing is to be drawn.)");
 }
 

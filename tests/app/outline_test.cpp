@@ -415,6 +415,21 @@ TEST(Outline, RefusesOptionsThatChangeNothing) {
     }
 }
 
+// A file of options may hold what a drawing has no use for.
+TEST(Outline, TakesOptionsOfAFileThatChangeNothing) {
+    const TemporaryFolder folder;
+    const RunOptions here{.folder = folder.path()};
+    writeText(folder.path() / "house.cfg", "from = 1,1,1\nfocal = 35\ndash = 1 1\ntones = 0.5\n");
+    const std::vector<Names> lines{
+        {"--eye", "0,-20,5"}, {"--camera", "orthographic"}, {"--no-hidden"}, {"--fill", "flat"}};
+    for (const Names& options : lines) {
+        Names words{"outline", kTeapotFile, "-o", "out.svg", "--config", "house.cfg"};
+        words.insert(words.end(), options.begin(), options.end());
+        const RunResult found = runBandvox(words, here);
+        EXPECT_EQ(found.status, 0) << options.front() << found.err;
+    }
+}
+
 TEST(Outline, RefusesBrokenFiles) {
     struct Broken {
         std::string name, text, words;

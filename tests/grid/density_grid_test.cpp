@@ -334,6 +334,7 @@ TEST_F(DensityGridFile, ManyLeavesComeBackWhoeverReadsThem) {
 
 // Names that OpenVDB's reader knows grids by, and trees that several share.
 TEST_F(DensityGridFile, NamesAndSharedTreesAreAsOpenVdbWritesThem) {
+    openvdb::initialize();
     const auto grid = openvdb::FloatGrid::create(0.0F);
     grid->tree().setValue(Coord(1, 2, 3), 0.5F);
     openvdb::GridPtrVec grids;

@@ -50,7 +50,8 @@ OPTIONS = {
         "tolerance": "OutlineOptions.tolerance", "crease_angle": "OutlineOptions.creaseAngle",
         "hidden": "OutlineOptions.hidden", "isophotes": "OutlineOptions.isophotes",
         "suggestive": "OutlineOptions.suggestive", "tones": "OutlineOptions.tones",
-        "light": "OutlineOptions.light", "stroke": "StrokeOptions.width",
+        "light": "OutlineOptions.light", "resolution": "DensityOptions.resolution",
+        "cutoff": "ExponentialFilter.cutoff", "order": "ExponentialFilter.order", "stroke": "StrokeOptions.width",
         "stroke_color": "StrokeOptions.color", "hidden_stroke": "StrokeOptions.hiddenWidth",
         "hidden_color": "StrokeOptions.hiddenColor", "dash": "StrokeOptions.dash",
         "fill_colors": "StrokeOptions.fillColors", "shade": "StrokeOptions.shade",
@@ -80,9 +81,10 @@ def members():
         for struct, body in re.findall(r"^struct (\w+)[^;{]*\{\n(.*?)^\};", header.read_text(),
                                        re.DOTALL | re.MULTILINE):
             # A comment before a member, or behind it and on the lines after it.
-            for before, name, default, after in re.findall(
-                    r"((?:^ +/// .*\n)*)^ {4}[\w:<>,* ]+? (\w+)(?: = ([^;]*?)|\{[^;]*?\})?;"
+            for before, name, default, listed, after in re.findall(
+                    r"((?:^ +/// .*\n)*)^ {4}[\w:<>,* ]+? (\w+)(?: = ([^;]*?)|\{([^;]*?)\})?;"
                     r"((?: +///< .*\n)*)", body, re.MULTILINE):
+                default = default or listed
                 comment = re.sub(r"\s*///<?\s*", " ", before + after).strip()
                 found[f"{struct}.{name}"] = default, comment
     return found
@@ -149,9 +151,13 @@ def ranges_in(text):
 def test_defaults_are_those_of_the_library(function, argument, member):
     declared, _ = members()[member]
     default = arguments_of(function)[argument]
-    if default is None or declared == "":
-        return  # The docstring says what that means.
-    if isinstance(default, bool):
+    if declared == "":
+        return  # It is found out, and the docstring says how.
+    if default is None:
+        said = said_of(function, argument)
+        values = re.findall(r"#\w+|-?\d[\d.]*", declared)
+        assert values and all(value in said for value in values), (declared, said)
+    elif isinstance(default, bool):
         assert declared == str(default).lower()
     elif isinstance(default, str):
         assert declared.strip('"') == default

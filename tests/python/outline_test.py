@@ -225,7 +225,7 @@ def test_a_torus_has_suggestive_contours():
     {"eye": (0, -20, 5), "from_": (0, -1, 0)}, {"light": (0, 0, 1)},
     {"isophotes": [0.5], "kinds": ["contour"]}, {"crease_angle": 10, "kinds": ["contour"]},
     {"suggestive": 5}, {"tones": [0.5]}, {"shade": 0.3}, {"fill_colors": ["#123456"]},
-    {"fill": "flat", "tones": [0.5]},
+    {"fill": "flat", "tones": [0.5]}, {"resolution": 64}, {"voxel_size": 0.1}, {"cutoff": 0.2}, {"order": 4},
 ])
 def test_arguments_that_change_nothing_are_refused(arguments):
     with pytest.raises(bandvox.UsageError, match="expected"):
@@ -238,6 +238,11 @@ def test_arguments_of_patches_are_refused_for_grids():
         bandvox.outline(ball, crease_angle=10)
     with pytest.raises(bandvox.UsageError, match="'suggestive' among the kinds"):
         bandvox.outline(ball, suggestive=5, kinds=["contour"])
+
+
+def test_the_size_of_voxels_is_given_once():
+    with pytest.raises(bandvox.UsageError, match="expected one of them"):
+        bandvox.outline("shape:sphere", resolution=16, voxel_size=0.1)
 
 
 def test_info_tells_of_patches(cylinder):

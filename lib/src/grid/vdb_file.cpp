@@ -141,6 +141,7 @@ void writeVdb(const fs::path& path, const openvdb::GridCPtrVec& grids,
               const VdbWriteOptions& options, Progress& progress) {
     AtomicFile file(path);
     writeVdb(file, grids, options, progress);
+    progress.throwIfInterrupted();
     file.commit();
 }
 
