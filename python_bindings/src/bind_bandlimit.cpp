@@ -278,10 +278,10 @@ unless this says how much. tile: side of the cube filtered at a time, voxels, ev
 chooses. clamp: limit the density to 0 .. 1. iso: the value that is the surface; 'volume' takes the
 one that encloses the volume of the source. route: 'auto', 'exact', 'sampled' (shapes, functions) or
 'winding' (meshes with openings). overlap: 'union' or 'sum' of a source's shells. oversample:
-samples along a voxel's side, or rows of the winding number, 1 to 64; 8 and 4 if it is None. base: of free-form surfaces
-that are a height field, the solid between them and the plane z = base, world units. shard: (i, n)
-makes part i of n, from 1, which join_shards joins. threads: 0 for all. progress: called as
-progress(stage, fraction or None).
+samples along a voxel's side, or rows of the winding number, 1 to 64; 8 and 4 if it is None. base:
+of free-form surfaces that are a height field, the solid between them and the plane z = base, world
+units. shard: (i, n) makes part i of n, from 1, which join_shards joins. threads: 0 for all.
+progress: called as progress(stage, fraction or None).
 
 What was measured is in the grid's metadata. Raises UsageError, InputError, ResultError,
 OutOfMemoryError; warns by BandvoxWarning.)");
