@@ -71,7 +71,7 @@ struct SampleBlock {
     }
     samples = samples.subspan(taken);
     for (int i = block.count; i < kTogether; ++i) {
-        for (int axis = 0; axis < 3; ++axis) block.position[axis][i] = 0;
+        for (auto& positions : block.position) positions[i] = 0;
         block.weight[i] = 0;
     }
 }
