@@ -270,6 +270,7 @@ TEST(ReadCadPatches, RefusesWhatIsNoWholeFile) {
         {".step", changed("CARTESIAN_POINT('',(0.,", "CARTESIAN_POINT('',(1.E300,")},
         {".step", changed("CARTESIAN_POINT('',(0.,", "CARTESIAN_POINT('',(-2.E12,")},
         {".step", changed("CARTESIAN_POINT('',(0.,", "CARTESIAN_POINT('',(20000000000000,")},
+        {".step", withProperty("MEASURE_WITH_UNIT(VOLUME_MEASURE(1.E+30),#1)")},
         {".step", withProperty("LENGTH_MEASURE_WITH_UNIT(VOLUME_MEASURE(1.5E+13),#1)")},
         {".step", withProperty("CARTESIAN_POINT('',(0.1E" + std::string(90, '0') + "14,0.,0.))")},
         {".step", withProperty("CARTESIAN_POINT('',(" + std::string(90, '9') + ".,0.,0.))")},
@@ -310,7 +311,8 @@ TEST(ReadCadPatches, TakesLargeNumbersThatAreNoLengths) {
     const std::string digits(91, '7');
     const std::vector<std::string> properties{
         "MEASURE_REPRESENTATION_ITEM('',VOLUME_MEASURE(1.5E+13),#1)",
-        "MEASURE_WITH_UNIT(AREA_MEASURE(1.5E+13),#1)",
+        "(MEASURE_REPRESENTATION_ITEM()MEASURE_WITH_UNIT(AREA_MEASURE(1.5E+13),#1)"
+        "REPRESENTATION_ITEM(''))",
         "INTEGER_REPRESENTATION_ITEM('id',20240101123456)",
         "REAL_REPRESENTATION_ITEM('',1.5E+300)",
         "BINARY_ITEM('',\"0123456789012345678\")",

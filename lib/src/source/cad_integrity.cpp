@@ -88,23 +88,25 @@ class StepParentheses {
   public:
     // `word`: the keyword before it, if there is one.
     void open(std::string_view word) {
+        const bool isItem = word.ends_with("REPRESENTATION_ITEM");
+        mIsItem |= isItem;
         Kind kind = mKinds.empty() ? Kind{} : mKinds.back();
-        // What stands in units is a factor of lengths, whatever it is called.
-        kind.isUnit |= word.ends_with("LENGTH_MEASURE_WITH_UNIT") ||
-                       word.ends_with("ANGLE_MEASURE_WITH_UNIT") ||
-                       word == "UNCERTAINTY_MEASURE_WITH_UNIT";
+        // A measure with its unit may be a factor of lengths, whatever kind it says that it is.
+        kind.isUnit |= !mIsItem && word.ends_with("MEASURE_WITH_UNIT");
         if (!word.empty()) {
             const bool isOfShape =
                 word.ends_with("LENGTH_MEASURE") || word.ends_with("ANGLE_MEASURE");
-            kind.isProperty =
-                word.ends_with("REPRESENTATION_ITEM") || (word.ends_with("_MEASURE") && !isOfShape);
+            kind.isProperty = isItem || (word.ends_with("_MEASURE") && !isOfShape);
         }
         mKinds.push_back(kind);
     }
     void close() {
         if (!mKinds.empty()) mKinds.pop_back();
     }
-    void closeAll() { mKinds.clear(); }
+    void endEntity() {
+        mKinds.clear();
+        mIsItem = false;
+    }
 
     // Whether a number here is no length and no other part of a shape: a volume, say.
     bool holdProperty() const {
@@ -116,6 +118,7 @@ class StepParentheses {
         bool isUnit = false, isProperty = false;
     };
     std::vector<Kind> mKinds;
+    bool mIsItem = false;  // whether an entity is a property of something
 };
 
 // Goes through the text outside of strings and comments. Open CASCADE follows names that are not
@@ -157,7 +160,7 @@ void requireSoundStep(const FileContents& file) {
         } else {
             if (c == '(') parentheses.open(word);
             if (c == ')') parentheses.close();
-            if (c == ';') parentheses.closeAll();
+            if (c == ';') parentheses.endEntity();
             if (std::isspace(static_cast<unsigned char>(c)) == 0) word = {};
             ++i;
         }
