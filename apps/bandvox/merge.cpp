@@ -132,7 +132,7 @@ openvdb::FloatGrid::Ptr chooseDensity(CommandRun& run, const openvdb::GridPtrVec
         throw Error(ErrorKind::Input, "the grid '" + grid->getName() + "' of '" + input +
                                           "' is a level set; make a density of it first: bandvox "
                                           "convert " +
-                                          input + " -o ... --as density");
+                                          shellWord(input) + " -o ... --as density");
     }
     std::vector<std::string> left;
     for (const auto& other : grids) {
@@ -167,10 +167,10 @@ openvdb::FloatGrid::ConstPtr alignedTo(CommandRun& run, const openvdb::FloatGrid
     const std::string difference = latticeDifference(first.transform(), grid->transform());
     if (difference.empty()) return grid;
     if (!request.resamples) {
-        throw Error(ErrorKind::Input, "'" + input + "' is on another lattice than '" +
-                                          request.inputs[0] + "': " + difference +
-                                          "; bring it there by --resample, or by bandvox convert " +
-                                          input + " -o ... --onto " + request.inputs[0]);
+        throw Error(ErrorKind::Input,
+                    "'" + input + "' is on another lattice than '" + request.inputs[0] + "': " +
+                        difference + "; bring it there by --resample, or by bandvox convert " +
+                        shellWord(input) + " -o ... --onto " + shellWord(request.inputs[0]));
     }
     run.say("resample " + input + ": " + difference);
     ResampleOptions options;

@@ -27,8 +27,8 @@ openvdb::BBoxd controlBox(const PatchModel& model) {
     return box;
 }
 
-void addPatchSolid(PatchModel model, Json& report, Progress& progress) {
-    const PatchSolid solid = makePatchSolid("", std::move(model), {}, progress);
+void addPatchSolid(const std::string& name, PatchModel model, Json& report, Progress& progress) {
+    const PatchSolid solid = makePatchSolid(name, std::move(model), {}, progress);
     const PatchSolidReport& found = solid.report;
     report["bounds"] = boundsJson(solid.source->bounds());
     report["pieces"] = found.pieces;
@@ -49,7 +49,7 @@ void addPatchSolid(PatchModel model, Json& report, Progress& progress) {
 
 }  // namespace
 
-Json patchReport(PatchModel model, Progress& progress) {
+Json patchReport(PatchModel model, Progress& progress, const std::string& name) {
     Json report;
     report["patches"] = model.patches.size();
     report["faces"] = model.topology.faces.size();
@@ -63,7 +63,7 @@ Json patchReport(PatchModel model, Progress& progress) {
     report["problem"] = nullptr;
     if (!model.patches.empty()) report["bounds"] = boundsJson(controlBox(model));
     try {
-        addPatchSolid(std::move(model), report, progress);
+        addPatchSolid(name, std::move(model), report, progress);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::Input && error.kind() != ErrorKind::Result) throw;
         report["problem"] = error.what();
@@ -75,15 +75,19 @@ Json patchReport(const std::string& input, Progress& progress) {
     PatchModel model = readPatches(input, progress);
     Json report;
     report["file"] = input;
-    report["file_bytes"] = std::filesystem::file_size(input);
-    report.update(patchReport(std::move(model), progress));
+    report["file_bytes"] = nullptr;
+    if (std::filesystem::is_regular_file(input)) {
+        report["file_bytes"] = std::filesystem::file_size(input);
+    }
+    report.update(patchReport(std::move(model), progress, input));
     return report;
 }
 
 std::string patchReportInWords(const Json& report) {
+    const Json& bytes = report["file_bytes"];
     std::string out = inWords(report["file"]) + ": " +
-                      formatBytes(report["file_bytes"].get<std::int64_t>()) +
-                      ", free-form surfaces\n";
+                      (bytes.is_null() ? "" : formatBytes(bytes.get<std::int64_t>()) + ", ") +
+                      "free-form surfaces\n";
     appendLine(out, "patches", inWords(report["patches"]));
     if (report["faces"] != 0) appendLine(out, "faces", inWords(report["faces"]));
     appendLine(out, "objects", std::to_string(report["objects"].size()));

@@ -11,7 +11,8 @@ namespace bandvox::app {
 
 /// What a file of free-form surfaces holds, and what would be done to make it a solid.
 ///
-/// Keys: file, file_bytes, patches, faces (trimmed ones, of parts), objects (their names), bounds
+/// Keys: file, file_bytes (null of a pipe), patches, faces (trimmed ones, of parts), objects (their
+/// names), bounds
 /// ({min, max}, world, of the solid's surface; without a solid of the control points, which enclose
 /// it), pieces, patches_flipped, pieces_turned, sides_shared_by_more (than two patches),
 /// pieces_meeting (that others may run into), holes ([{edges, perimeter, center}], largest first),
@@ -20,8 +21,9 @@ namespace bandvox::app {
 /// solid comes of it, else null). Throws Error(ErrorKind::Input) if the file cannot be read.
 nlohmann::ordered_json patchReport(const std::string& input, Progress& progress);
 
-/// The same of patches that have been read, without file and file_bytes.
-nlohmann::ordered_json patchReport(PatchModel model, Progress& progress);
+/// The same of patches that have been read, without file and file_bytes; problems call them `name`.
+nlohmann::ordered_json patchReport(PatchModel model, Progress& progress,
+                                   const std::string& name = "model");
 
 /// The same for people.
 std::string patchReportInWords(const nlohmann::ordered_json& report);

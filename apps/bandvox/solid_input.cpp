@@ -124,8 +124,9 @@ void requireMeshOrShape(const std::string& verb, const std::string& input) {
                     "cannot " + verb + " '" + input +
                         "': it holds free-form surfaces; make a mesh of them first: bandvox "
                         "convert " +
-                        input + " -o " + std::filesystem::path(input).stem().string() +
-                        "-mesh.ply --resolution 256");
+                        shellWord(input) + " -o " +
+                        shellWord(std::filesystem::path(input).stem().string() + "-mesh.ply") +
+                        " --resolution 256");
     }
     if (isShape(input) || isMeshFile(input)) return;
     const std::string extension = extensionOf(input);

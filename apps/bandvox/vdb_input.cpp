@@ -2,6 +2,7 @@
 
 #include "command_run.h"
 #include "solid_input.h"
+#include "words.h"
 
 #include <bandvox/grid/join_shards.h>
 #include <bandvox/source/read_mesh.h>
@@ -16,10 +17,10 @@ void requireVdb(const std::string& verb, const std::string& input) {
     std::string message = "cannot ";
     message += verb + " '" + input + "': expected a .vdb file";
     if (isShape(input) || isMeshFile(input) || isPatchFile(input)) {
-        message += "; convert it first: bandvox convert " + input + " -o " +
-                   (isShape(input) ? input.substr(input.find(':') + 1)
-                                   : std::filesystem::path(input).stem().string()) +
-                   ".vdb";
+        message += "; convert it first: bandvox convert " + shellWord(input) + " -o " +
+                   shellWord((isShape(input) ? input.substr(input.find(':') + 1)
+                                             : std::filesystem::path(input).stem().string()) +
+                             ".vdb");
     }
     throw Error(ErrorKind::Input, message);
 }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 
 namespace bandvox::app {
 namespace {
@@ -79,6 +81,17 @@ std::string printable(const std::string& text) {
         }
     }
     return shown;
+}
+
+std::string shellWord(const std::string& text) {
+    const bool isPlain = std::all_of(text.begin(), text.end(), [](unsigned char c) {
+        return std::isalnum(c) != 0 || c >= 0x80 ||
+               std::string_view("_-./:,+@%=").find(static_cast<char>(c)) != std::string_view::npos;
+    });
+    if (isPlain && !text.empty()) return text;
+    std::string out = "'";
+    for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
 }
 
 std::string lowerCase(std::string text) {

@@ -32,6 +32,9 @@ std::string joined(const std::vector<std::string>& strings, const std::string& s
 /// neither break a line nor steer a terminal.
 std::string printable(const std::string& text);
 
+/// A word of a command as a shell takes it: in single quotes if it would split or expand it.
+std::string shellWord(const std::string& text);
+
 /// ASCII letters in lower case.
 std::string lowerCase(std::string text);
 

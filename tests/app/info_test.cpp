@@ -206,6 +206,33 @@ TEST(Info, TellsOfPatchesWhatItTellsOfMeshes) {
     EXPECT_EQ(runBandvox({"info", "none.bpt"}, here).status, 3);
 }
 
+TEST(Info, NamesAFileWithoutPatchesAndReadsPipes) {
+    const TemporaryFolder folder;
+    const RunOptions here{.folder = folder.path()};
+    writeText(folder.path() / "none.bpt", "0\n");
+    const RunResult none = runBandvox({"info", "none.bpt"}, here);
+    EXPECT_NE(none.out.find("'none.bpt' has no patches"), std::string::npos) << none.out;
+    writeText(folder.path() / "box.bpt", boxOfPatches(false));
+    const RunResult pipe = runProgram(
+        {"sh", "-c", "mkfifo pipe.bpt && { cat box.bpt > pipe.bpt 2>/dev/null & }"}, here);
+    EXPECT_EQ(pipe.status, 0);
+    const RunResult read = runBandvox({"info", "pipe.bpt"}, here);
+    EXPECT_EQ(read.status, 0) << read.err;
+    EXPECT_NE(read.out.find("pipe.bpt: free-form surfaces"), std::string::npos) << read.out;
+}
+
+TEST(Info, OfPatchesOtherCommandsQuoteNamesForShells) {
+    const TemporaryFolder folder;
+    const RunOptions here{.folder = folder.path()};
+    writeText(folder.path() / "it's a.bpt", boxOfPatches(false));
+    const RunResult render = runBandvox({"render", "it's a.bpt", "-o", "a.png"}, here);
+    EXPECT_NE(render.err.find("convert 'it'\\''s a.bpt' -o 'it'\\''s a.vdb'"), std::string::npos)
+        << render.err;
+    const RunResult voxelize = runBandvox({"voxelize", "it's a.bpt", "-o", "a.vdb"}, here);
+    EXPECT_NE(voxelize.err.find("-o 'it'\\''s a-mesh.ply' --res"), std::string::npos)
+        << voxelize.err;
+}
+
 TEST(Info, OfPatchesOtherCommandsSayWhatToDo) {
     const TemporaryFolder folder;
     const RunOptions here{.folder = folder.path()};

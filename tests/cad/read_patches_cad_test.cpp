@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRep_Builder.hxx>
 #include <TopExp_Explorer.hxx>
@@ -15,6 +16,8 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <gp_Ax1.hxx>
+#include <gp_Lin.hxx>
 #include <gp_Trsf.hxx>
 #include <gp_Vec.hxx>
 #include <iterator>
@@ -205,6 +208,24 @@ TEST(ReadCadPatches, AppendsModels) {
     EXPECT_NEAR(solid.source->volume(), 2 * (24 - kPi), 1e-5);
 }
 
+// Adds an entity to the text of a STEP file.
+auto withProperty(const std::string& entity) {
+    return [entity](const std::string& text) {
+        const std::string data = "DATA;";
+        return std::string(text).insert(text.find(data) + data.size(), "\n#900001=" + entity + ";");
+    };
+}
+
+// A shape, and an edge that is all of a line.
+TopoDS_Shape withAxis(const TopoDS_Shape& shape) {
+    const BRep_Builder builder;
+    TopoDS_Compound all;
+    builder.MakeCompound(all);
+    builder.Add(all, shape);
+    builder.Add(all, BRepBuilderAPI_MakeEdge(gp_Lin(gp_Ax1())).Edge());
+    return all;
+}
+
 ErrorKind kindOf(const std::function<void()>& work, std::string& message) {
     try {
         work();
@@ -248,6 +269,14 @@ TEST(ReadCadPatches, RefusesWhatIsNoWholeFile) {
         {".brep", changed("\n1 0 0 ", "\n1 -1e22 0 ")},
         {".step", changed("CARTESIAN_POINT('',(0.,", "CARTESIAN_POINT('',(1.E300,")},
         {".step", changed("CARTESIAN_POINT('',(0.,", "CARTESIAN_POINT('',(-2.E12,")},
+        {".step", changed("CARTESIAN_POINT('',(0.,", "CARTESIAN_POINT('',(20000000000000,")},
+        {".step", withProperty("MEASURE_WITH_UNIT(VOLUME_MEASURE(1.E+30),#1)")},
+        {".step", withProperty("LENGTH_MEASURE_WITH_UNIT(VOLUME_MEASURE(1.5E+13),#1)")},
+        {".step", withProperty("CARTESIAN_POINT('',(0.1E" + std::string(90, '0') + "14,0.,0.))")},
+        {".step", withProperty("CARTESIAN_POINT('',(" + std::string(90, '9') + ".,0.,0.))")},
+        {".step", withProperty("CARTESIAN_POINT('',(1" + std::string(400, '0') + ".E-9,0.,0.))")},
+        {".brep", changed("\n1 0 0 ", "\n1 2e+100 0 ")},
+        {".brep", changed("\n1  1 0 0 ", "\n1  1 0 -1e+99 ")},
         {".iges", changed("123,1.,0.,-0.;", "123,1.D300,0.;")},
         {".iges", changed("123,1.,0.,-0.;", "123,1.E300,0.,-0.;")},
         {".step", first(0)},
@@ -274,6 +303,41 @@ TEST(ReadCadPatches, RefusesWhatIsNoWholeFile) {
     }
     std::string message;
     EXPECT_EQ(kindOf([&] { readPatches(folder / "none.step"); }, message), ErrorKind::Input);
+}
+
+// Neither what is said of a part besides its shape, nor what is no number, has to be in range.
+TEST(ReadCadPatches, TakesLargeNumbersThatAreNoLengths) {
+    const PartFolder folder;
+    const std::string digits(91, '7');
+    const std::vector<std::string> properties{
+        "MEASURE_REPRESENTATION_ITEM('',VOLUME_MEASURE(1.5E+13),#1)",
+        "(MEASURE_REPRESENTATION_ITEM()MEASURE_WITH_UNIT(AREA_MEASURE(1.5E+13),#1)"
+        "REPRESENTATION_ITEM(''))",
+        "INTEGER_REPRESENTATION_ITEM('id',20240101123456)",
+        "REAL_REPRESENTATION_ITEM('',1.5E+300)",
+        "BINARY_ITEM('',\"0123456789012345678\")",
+        "CARTESIAN_POINT('',(0.1" + digits + ",-12.3" + digits + "E-1,0.))",
+        "CARTESIAN_POINT('',(1.E-400,-0." + std::string(400, '0') + "1,0.))",
+        "CARTESIAN_POINT('',(0.E+400,0." + std::string(400, '0') + "1E+300,0.))"};
+    const auto path = folder.write(cylinder(1, 2), ".step");
+    const std::string text = textOf(path);
+    for (const std::string& property : properties) {
+        writeText(path, withProperty(property)(text));
+        try {
+            EXPECT_NEAR(makePatchSolid("part", readPatches(path)).source->volume(), 2 * kPi, 1e-5);
+        } catch (const Error& error) {
+            ADD_FAILURE() << property << ": " << error.what();
+        }
+    }
+}
+
+// Open CASCADE writes them so; no face need have them.
+TEST(ReadCadPatches, TakesEdgesWithoutEnds) {
+    const PartFolder folder;
+    const auto path = folder.write(withAxis(cylinder(1, 2)), ".brep");
+    const std::string text = textOf(path);
+    ASSERT_NE(text.find(" -2e+100 2e+100"), std::string::npos) << text;
+    EXPECT_NEAR(makePatchSolid("part", readPatches(path)).source->volume(), 2 * kPi, 1e-5);
 }
 
 // What stands in names is no number.

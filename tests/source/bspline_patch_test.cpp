@@ -94,6 +94,86 @@ TEST(BsplinePatch, TakesKnotsThatNearlyAreOneForOne) {
     EXPECT_EQ(bezierPatches(near).size(), 2U * 3U);
 }
 
+// A line of control points (k, k mod 2) in x and z, of degree 1 along v, with `inner` knots between
+// those of the ends, 0 and 1.
+BsplineNet ribbon(int degree, const std::vector<double>& inner) {
+    const auto order = static_cast<std::size_t>(degree) + 1;
+    BsplineNet net;
+    net.degree = {degree, 1};
+    net.count = {static_cast<int>(inner.size() + order), 2};
+    net.knots[0].assign(order, 0);
+    net.knots[0].insert(net.knots[0].end(), inner.begin(), inner.end());
+    net.knots[0].insert(net.knots[0].end(), order, 1);
+    net.knots[1] = {0, 0, 1, 1};
+    for (int i = 0; i < net.count[0]; ++i) {
+        for (const double y : {0.0, 1.0}) {
+            net.control.push_back({static_cast<double>(i), y, static_cast<double>(i % 2), 1});
+        }
+    }
+    return net;
+}
+
+double endOf(const BezierPatch& patch, double u) {
+    return evaluate(patch, u, 0.5).position[0];
+}
+
+// Between more near knots than the degree the surface goes on, as it does between far ones.
+TEST(BsplinePatch, KeepsWhatIsBetweenMoreNearKnotsThanItsDegree) {
+    struct Case {
+        int degree;
+        std::vector<double> steps;
+        std::size_t patches;
+    };
+    const std::vector<Case> cases{{1, {0, 1}, 3},       {1, {0, 1, 3}, 4},    {2, {0, 1, 2}, 4},
+                                  {2, {0, 0, 1}, 3},    {3, {0, 1, 1, 1}, 3}, {3, {0, 0, 1, 1}, 3},
+                                  {2, {0, 1, 1, 2}, 4}, {2, {0, 1e-4, 1}, 4}};
+    for (const auto& [degree, steps, count] : cases) {
+        for (const double step : {0.1, 1e-8, 1e-10}) {
+            std::vector<double> inner;
+            for (const double k : steps) inner.push_back(0.5 + step * k);
+            const BsplineNet net = ribbon(degree, inner);
+            const std::vector<BezierPatch> patches = bezierPatches(net);
+            ASSERT_EQ(patches.size(), count) << degree << " " << step;
+            double x = 0;
+            for (const BezierPatch& patch : patches) {
+                EXPECT_NEAR(endOf(patch, 0), x, 1e-12) << degree << " " << step;
+                x = endOf(patch, 1);
+            }
+            EXPECT_NEAR(x, net.count[0] - 1, 1e-12);
+        }
+    }
+}
+
+// As they do in the ends, of which the outermost knot has no part in the surface.
+TEST(BsplinePatch, KeepsWhatIsBetweenMoreNearKnotsAtItsEnds) {
+    const std::vector<BezierPatch> patches = bezierPatches(ribbon(2, {1e-10, 1 - 1e-10}));
+    ASSERT_EQ(patches.size(), 3U);
+    EXPECT_NEAR(endOf(patches[0], 1), 1, 1e-9);
+    EXPECT_NEAR(endOf(patches[2], 0), 3, 1e-9);
+}
+
+TEST(BsplinePatch, IsCutInTwoByMoreEqualKnotsThanItsDegree) {
+    const double next = std::nextafter(0.5, 1);
+    for (const std::vector<double>& inner :
+         {std::vector<double>{0.5, 0.5, 0.5}, {0.5, 0.5, next}}) {
+        const std::vector<BezierPatch> patches = bezierPatches(ribbon(2, inner));
+        ASSERT_EQ(patches.size(), 2U);
+        EXPECT_EQ(endOf(patches[0], 0), 0);
+        EXPECT_EQ(endOf(patches[0], 1), 2);
+        EXPECT_EQ(endOf(patches[1], 0), 3);
+        EXPECT_EQ(endOf(patches[1], 1), 5);
+    }
+}
+
+TEST(BsplinePatch, KeepsToARangeBetweenNearKnots) {
+    BsplineNet net = ribbon(1, {0.5, 0.5 + 0x1p-32});
+    net.range[0] = {0.5 + 0x1p-34, 0.5 + 0x1p-33};
+    const std::vector<BezierPatch> patches = bezierPatches(net);
+    ASSERT_EQ(patches.size(), 1U);
+    EXPECT_EQ(endOf(patches[0], 0), 1.25);
+    EXPECT_EQ(endOf(patches[0], 1), 1.5);
+}
+
 TEST(BsplinePatch, LeavesOutWhatARangeHardlyReaches) {
     BsplineNet net = sampleNet();
     net.range = {{{1, 1.5 + 1e-12}, {1 - 1e-12, 2.5}}};

@@ -43,6 +43,8 @@ struct Span {
     std::array<double, 2> range;
 };
 
+// The spans of joined knots: what the range leaves of one counts if it is not as narrow as what
+// joining leaves out, and in a span that is as narrow itself, if it is no such part of that.
 std::vector<Span> spansOf(const BsplineNet& net, std::size_t axis) {
     const auto& knots = net.knots[axis];
     const auto [low, high] = net.range[axis];
@@ -51,10 +53,12 @@ std::vector<Span> spansOf(const BsplineNet& net, std::size_t axis) {
     std::vector<Span> spans;
     for (int k = net.degree[axis]; k < net.count[axis]; ++k) {
         Span span{k, {knots[static_cast<std::size_t>(k)], knots[static_cast<std::size_t>(k) + 1]}};
+        const double width = span.range[1] - span.range[0];
         if (low < high) {
             span.range = {std::max(span.range[0], low), std::min(span.range[1], high)};
         }
-        if (span.range[1] - span.range[0] > least) spans.push_back(span);
+        const double narrow = width > least ? least : kLeastSpan * width;
+        if (span.range[1] - span.range[0] > narrow) spans.push_back(span);
     }
     return spans;
 }

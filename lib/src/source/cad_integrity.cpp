@@ -3,7 +3,6 @@
 #include "core/letter_case.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -26,28 +25,54 @@ bool isNoNumber(std::string_view word) {
 // Lengths, in any unit, beyond which Open CASCADE crashes, or takes for good: it works to 1e-7.
 constexpr double kFarthest = 1e12;
 
-// Reads the number at the beginning of a text, if there is one that is too large; returns how long
-// it is, 0 if there is none. Fortran's exponents have a D.
-std::size_t requireNumberInRange(const FileContents& file, std::string_view text) {
-    const std::size_t sign = text.starts_with('+') ? 1 : 0;
-    std::array<char, 64> digits{};
-    const std::size_t count = std::min(digits.size(), text.size() - sign);
-    std::replace_copy_if(
-        text.begin() + static_cast<std::ptrdiff_t>(sign),
-        text.begin() + static_cast<std::ptrdiff_t>(sign + count), digits.begin(),
-        [](char c) { return c == 'D'; }, 'E');
-    double value = 0;
-    const auto [end, status] = std::from_chars(digits.data(), digits.data() + count, value);
-    if (status == std::errc::invalid_argument) return 0;
-    const auto length = sign + static_cast<std::size_t>(end - digits.data());
-    const std::string_view number = text.substr(0, length);
-    const bool isSmall = status == std::errc::result_out_of_range &&
-                         number.find('-', sign + 1) != std::string_view::npos;
-    const bool isFar = status == std::errc::result_out_of_range || !(std::abs(value) <= kFarthest);
-    if (isFar && !isSmall) {
-        file.fail("holds the number " + std::string(number) + "; expected none beyond 1e12");
+bool isDigit(char c) {
+    return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+// How long the number at the beginning of a text is, with all its digits; 0 if there is none.
+// Fortran's exponents have a D.
+std::size_t lengthOfNumber(std::string_view text) {
+    const auto at = [&](std::size_t i) { return i < text.size() ? text[i] : ' '; };
+    const auto isSign = [](char c) { return c == '+' || c == '-'; };
+    std::size_t end = isSign(at(0)) ? 1 : 0;
+    bool hasDigits = false;
+    for (; isDigit(at(end)) || at(end) == '.'; ++end) hasDigits |= isDigit(at(end));
+    if (!hasDigits) return 0;
+    if (std::string_view("EeDd").find(at(end)) == std::string_view::npos) return end;
+    const std::size_t exponent = end + (isSign(at(end + 1)) ? 2 : 1);
+    if (!isDigit(at(exponent))) return end;
+    for (end = exponent; isDigit(at(end));) ++end;
+    return end;
+}
+
+// Whether a number that a double cannot hold is too large for it, not too small: whether its first
+// digit other than 0 is before the point.
+bool isHuge(std::string_view number) {
+    const std::size_t letter = std::min(number.find('E'), number.size());
+    const std::size_t point = std::min(number.find('.'), letter);
+    const std::size_t first = number.find_first_of("123456789");
+    std::string_view digits = number.substr(std::min(letter + 1, number.size()));
+    const bool isNegative = digits.starts_with('-');
+    if (isNegative || digits.starts_with('+')) digits.remove_prefix(1);
+    std::int64_t exponent = 0;
+    const auto status = std::from_chars(digits.data(), digits.data() + digits.size(), exponent).ec;
+    if (status == std::errc::result_out_of_range) return !isNegative;
+    if (isNegative) exponent = -exponent;
+    return static_cast<std::int64_t>(point) - static_cast<std::int64_t>(first) + exponent > 0;
+}
+
+// Refuses the number at the beginning of a text, if there is one, for being too large.
+void requireNumberInRange(const FileContents& file, std::string_view text) {
+    const std::string given(text.substr(0, lengthOfNumber(text)));
+    std::string number = given.substr(given.starts_with('+') ? 1 : 0);
+    for (char& c : number) {
+        if (std::string_view("eDd").find(c) != std::string_view::npos) c = 'E';
     }
-    return length;
+    double value = 0;
+    const auto status = std::from_chars(number.data(), number.data() + number.size(), value).ec;
+    const bool isFar =
+        status == std::errc::result_out_of_range ? isHuge(number) : !(std::abs(value) <= kFarthest);
+    if (isFar) file.fail("holds the number " + given + "; expected none beyond 1e12");
 }
 
 [[noreturn]] void failAtWord(const FileContents& file, std::string_view word) {
@@ -57,6 +82,44 @@ std::size_t requireNumberInRange(const FileContents& file, std::string_view text
 bool isLetter(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
+
+// What the parentheses around a place in a STEP file say of numbers there.
+class StepParentheses {
+  public:
+    // `word`: the keyword before it, if there is one.
+    void open(std::string_view word) {
+        const bool isItem = word.ends_with("REPRESENTATION_ITEM");
+        mIsItem |= isItem;
+        Kind kind = mKinds.empty() ? Kind{} : mKinds.back();
+        // A measure with its unit may be a factor of lengths, whatever kind it says that it is.
+        kind.isUnit |= !mIsItem && word.ends_with("MEASURE_WITH_UNIT");
+        if (!word.empty()) {
+            const bool isOfShape =
+                word.ends_with("LENGTH_MEASURE") || word.ends_with("ANGLE_MEASURE");
+            kind.isProperty = isItem || (word.ends_with("_MEASURE") && !isOfShape);
+        }
+        mKinds.push_back(kind);
+    }
+    void close() {
+        if (!mKinds.empty()) mKinds.pop_back();
+    }
+    void endEntity() {
+        mKinds.clear();
+        mIsItem = false;
+    }
+
+    // Whether a number here is no length and no other part of a shape: a volume, say.
+    bool holdProperty() const {
+        return !mKinds.empty() && mKinds.back().isProperty && !mKinds.back().isUnit;
+    }
+
+  private:
+    struct Kind {
+        bool isUnit = false, isProperty = false;
+    };
+    std::vector<Kind> mKinds;
+    bool mIsItem = false;  // whether an entity is a property of something
+};
 
 // Goes through the text outside of strings and comments. Open CASCADE follows names that are not
 // defined to nowhere.
@@ -69,10 +132,12 @@ void requireSoundStep(const FileContents& file) {
         file.fail("ends before END-ISO-10303-21; expected the rest of a STEP file");
     }
     std::vector<std::uint64_t> defined, used;
+    StepParentheses parentheses;
+    std::string_view word;  // before a parenthesis
     for (std::size_t i = 0; i < text.size();) {
         const char c = text[i];
-        if (c == '\'') {
-            i = std::min(text.find('\'', i + 1), text.size() - 1) + 1;
+        if (c == '\'' || c == '"') {
+            i = std::min(text.find(c, i + 1), text.size() - 1) + 1;
         } else if (text.compare(i, 2, "/*") == 0) {
             i = std::min(text.find("*/", i + 2), text.size() - 2) + 2;
         } else if (c == '#') {
@@ -83,15 +148,20 @@ void requireSoundStep(const FileContents& file) {
             const std::size_t next = text.find_first_not_of(" \t\r\n", i);
             const bool isDefined = next != std::string_view::npos && text[next] == '=';
             (isDefined ? defined : used).push_back(name);
-        } else if (std::isdigit(static_cast<unsigned char>(c)) != 0) {
-            const std::size_t length = requireNumberInRange(file, text.substr(i, 64));
-            i += std::max<std::size_t>(length, 1);
+        } else if (isDigit(c)) {
+            const std::string_view rest = text.substr(i);
+            if (!parentheses.holdProperty()) requireNumberInRange(file, rest);
+            i += lengthOfNumber(rest);
         } else if (isLetter(c)) {
             const std::size_t begin = i;
             while (i < text.size() && isLetter(text[i])) ++i;
-            const std::string_view word = text.substr(begin, i - begin);
+            word = text.substr(begin, i - begin);
             if (isNoNumber(word)) failAtWord(file, word);
         } else {
+            if (c == '(') parentheses.open(word);
+            if (c == ')') parentheses.close();
+            if (c == ';') parentheses.endEntity();
+            if (std::isspace(static_cast<unsigned char>(c)) == 0) word = {};
             ++i;
         }
     }
@@ -116,13 +186,20 @@ void requireSoundBrep(const FileContents& file) {
                word == "Polygon3D" || word == "PolygonOnTriangulations" || word == "Surfaces" ||
                word == "Triangulations" || word == "TShapes";
     };
+    // Open CASCADE's own, or twice that: where the curve of an edge has no end.
+    const auto isInfinity = [](std::string_view word) {
+        if (word.starts_with('-')) word.remove_prefix(1);
+        return word == "1e+100" || word == "2e+100";
+    };
+    bool isEdge = false;
     std::string_view before, last[2];
     std::size_t words = 0;  // after the last star
     for (std::size_t i = text.find_first_not_of(kBlanks); i < text.size();) {
         const std::size_t end = std::min(text.find_first_of(kBlanks, i), text.size());
         const std::string_view word = text.substr(i, end - i);
         if (isNoNumber(word)) failAtWord(file, word);
-        requireNumberInRange(file, word);
+        if (word == "Ed" || word == "*") isEdge = word == "Ed";
+        if (!(isEdge && isInfinity(word))) requireNumberInRange(file, word);
         if (isList(before)) {
             std::int64_t count = 0;
             std::from_chars(word.data(), word.data() + word.size(), count);

@@ -22,9 +22,14 @@ struct BsplineNet {
 
 /// The Bézier patches of a B-spline surface, one for each rectangle of its knots, which are the
 /// surface exactly, but for rounding (L. Ramshaw, "Blossoming: a connect-the-dots approach to
-/// splines", 1987). Knots nearer to each other than 1e-9 of the range of parameters are one knot,
-/// of their number's multiplicity; what `range` leaves between two is left out if it is as narrow.
-/// Throws Error(ErrorKind::Usage) if counts or knots are not as above.
+/// splines", 1987). Up to `degree` knots nearer to each other than 1e-9 of the range of parameters
+/// are one knot, of their number's multiplicity, if the surface moves by less than 1e-6 of its
+/// control polygon between them. Where more than `degree` knots are near but not equal, it moves
+/// a whole stretch, and what is between them are patches; where more than `degree` are equal, but
+/// for the rounding of doubles, it is cut in two, and nothing bridges the gap. What `range` leaves
+/// between two knots is left out if it is narrower than 1e-9 of all parameters, or of what is
+/// between the two if that is narrower itself. Throws Error(ErrorKind::Usage) if counts or knots
+/// are not as above.
 std::vector<BezierPatch> bezierPatches(const BsplineNet& net);
 
 }  // namespace bandvox
