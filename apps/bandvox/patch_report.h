@@ -12,9 +12,9 @@ namespace bandvox::app {
 /// What a file of free-form surfaces holds, and what would be done to make it a solid.
 ///
 /// Keys: file, file_bytes (null of a pipe), patches, faces (trimmed ones, of parts), objects (their
-/// names), bounds
-/// ({min, max}, world, of the solid's surface; without a solid of the control points, which enclose
-/// it), pieces, patches_flipped, pieces_turned, sides_shared_by_more (than two patches),
+/// names), bounds ({min, max}, world, of the solid's surface; without a solid of the control
+/// points, which enclose it), pieces, patches_flipped, pieces_turned, sides_shared_by_more (than
+/// two patches),
 /// pieces_meeting (that others may run into), holes ([{edges, perimeter, center}], largest first),
 /// area and volume (world, of the solid that comes of it; null if none does), closed (true if
 /// nothing had to be capped, and every side is one of two patches), warnings, and problem (why no

@@ -100,7 +100,8 @@ struct JoinedBlocks {
 };
 
 // Adds up the pieces of each block: every voxel was set by one piece and is 0 in the others, so
-// that their order does not matter, or lies in a far tile.
+// that their order does not matter, or lies in a far tile. All pieces are given back together in
+// the end, since tasks that free memory wait for each other.
 JoinedBlocks joinPieces(std::vector<Piece> pieces, const FarTiles& far,
                         const AssemblyOptions& options) {
     std::vector<std::size_t> starts;

@@ -47,9 +47,9 @@ openvdb::GridPtrVec VdbArchive::read(std::istream& stream, GuardedBuffer& buffer
 
 #if OPENVDB_LIBRARY_MAJOR_VERSION_NUMBER < 13
 
-// OpenVDB's own way to write compresses all leaves twice until version 13: first to note in the
+// The way to write of these versions of OpenVDB compresses all leaves twice: first to note in the
 // metadata how long each becomes, for readers that load leaves when they are asked for. Without the
-// notes these look at the lengths in front of the leaves.
+// notes, which newer versions do not make, they look at the lengths in front of the leaves.
 
 namespace {
 
