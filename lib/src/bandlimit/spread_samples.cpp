@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <utility>
 
 namespace bandvox {
 
@@ -174,34 +175,27 @@ template <int kLanes>
     }
 }
 
+// Loops of a known length stay in registers: a function for each width there is, from 2.
+template <int... kWidths>
+[[gnu::always_inline]] inline void spreadByWidth(std::integer_sequence<int, kWidths...> /*all*/,
+                                                 std::span<const SurfaceSample> samples,
+                                                 float offset, const KernelPolynomials& kernel,
+                                                 const SpreadLattice& lattice) {
+    const auto tryWidth = [&]<int kWidth>() __attribute__((always_inline)) {
+        if constexpr (kWidth >= 2) {
+            if (kernel.width == kWidth) {
+                spread<kWidth <= 8 ? 8 : 16, kWidth>(samples, offset, kernel, lattice);
+            }
+        }
+    };
+    (tryWidth.template operator()<kWidths>(), ...);
+}
+
 BANDVOX_FOR_EACH_INSTRUCTION_SET
 void spreadAll(std::span<const SurfaceSample> samples, float offset,
                const KernelPolynomials& kernel, const SpreadLattice& lattice) {
-    switch (kernel.width) {
-        case 2:
-            return spread<8, 2>(samples, offset, kernel, lattice);
-        case 3:
-            return spread<8, 3>(samples, offset, kernel, lattice);
-        case 4:
-            return spread<8, 4>(samples, offset, kernel, lattice);
-        case 5:
-            return spread<8, 5>(samples, offset, kernel, lattice);
-        case 6:
-            return spread<8, 6>(samples, offset, kernel, lattice);
-        case 7:
-            return spread<8, 7>(samples, offset, kernel, lattice);
-        case 8:
-            return spread<8, 8>(samples, offset, kernel, lattice);
-        case 9:
-            return spread<16, 9>(samples, offset, kernel, lattice);
-        case 10:
-            return spread<16, 10>(samples, offset, kernel, lattice);
-        case 11:
-            return spread<16, 11>(samples, offset, kernel, lattice);
-        default:
-            static_assert(SpreadingKernel::kMaximumWidth == 12);
-            return spread<16, 12>(samples, offset, kernel, lattice);
-    }
+    spreadByWidth(std::make_integer_sequence<int, SpreadingKernel::kMaximumWidth + 1>(), samples,
+                  offset, kernel, lattice);
 }
 
 BANDVOX_FOR_EACH_INSTRUCTION_SET
