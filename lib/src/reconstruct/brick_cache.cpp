@@ -6,27 +6,27 @@
 
 namespace bandvox {
 
-std::size_t BrickCache::PlaceHash::operator()(const openvdb::Coord& place) const {
-    std::uint64_t hash = 0;
+std::size_t BrickCache::KeyHash::operator()(const Key& key) const {
+    std::uint64_t hash = key.isWhole ? 1 : 0;
     for (int axis = 0; axis < 3; ++axis) {
-        hash = (hash ^ static_cast<std::uint32_t>(place[axis])) * 0x9E3779B97F4A7C15u;
+        hash = (hash ^ static_cast<std::uint32_t>(key.place[axis])) * 0x9E3779B97F4A7C15u;
         hash ^= hash >> 32;
     }
     return hash;
 }
 
 BrickCache::BrickCache(openvdb::FloatGrid::ConstPtr grid, InterpolationDesign design,
-                       std::size_t cacheBytes)
-    : mGrid(std::move(grid)), mDesign(std::move(design)) {
+                       const std::optional<DensityBand>& mostlyRead, std::size_t cacheBytes)
+    : mGrid(std::move(grid)), mDesign(std::move(design)), mMostlyRead(mostlyRead) {
     const std::size_t bricks = cacheBytes / CoefficientBrick::bytes(mDesign.kernel);
     mBricksPerShard = std::max<std::size_t>(bricks / kShards, 1);
 }
 
-std::shared_ptr<BrickCache::Slot> BrickCache::slot(const openvdb::Coord& place) {
+std::shared_ptr<BrickCache::Slot> BrickCache::slot(const Key& key) {
     // The low bits choose the bucket inside a shard's table; take others for the shard.
-    Shard& shard = mShards[(PlaceHash()(place) >> 20) % kShards];
+    Shard& shard = mShards[(KeyHash()(key) >> 20) % kShards];
     const std::lock_guard<std::mutex> lock(shard.mutex);
-    const auto found = shard.entries.find(place);
+    const auto found = shard.entries.find(key);
     if (found != shard.entries.end()) {
         shard.ages.splice(shard.ages.begin(), shard.ages, found->second.age);
         return found->second.slot;
@@ -35,16 +35,17 @@ std::shared_ptr<BrickCache::Slot> BrickCache::slot(const openvdb::Coord& place) 
         shard.entries.erase(shard.ages.back());
         shard.ages.pop_back();
     }
-    shard.ages.push_front(place);
+    shard.ages.push_front(key);
     auto slot = std::make_shared<Slot>();
-    shard.entries.emplace(place, Entry{slot, shard.ages.begin()});
+    shard.entries.emplace(key, Entry{slot, shard.ages.begin()});
     return slot;
 }
 
-BrickCache::BrickPtr BrickCache::brick(const openvdb::Coord& place, BrickScratch& scratch) {
-    const std::shared_ptr<Slot> slot = this->slot(place);
+BrickCache::BrickPtr BrickCache::build(const Key& key, BrickScratch& scratch) {
+    const std::shared_ptr<Slot> slot = this->slot(key);
     std::call_once(slot->built, [&] {
-        slot->brick = std::make_shared<const CoefficientBrick>(*mGrid, place, mDesign, scratch);
+        slot->brick = std::make_shared<const CoefficientBrick>(
+            *mGrid, key.place, mDesign, key.isWhole ? std::nullopt : mMostlyRead, scratch);
     });
     return slot->brick;
 }

@@ -63,6 +63,7 @@ class BrickProbe final : public DensityProbe {
             last.brick = mCache.brick(place, mScratch);
             last.place = place;
         }
+        if (!last.brick->holds(local)) last.brick = mCache.wholeBrick(place, mScratch);
         return last.brick.get();
     }
 
@@ -80,8 +81,9 @@ class BrickProbe final : public DensityProbe {
 class BrickReconstruction final : public Reconstruction {
   public:
     BrickReconstruction(openvdb::FloatGrid::ConstPtr grid, InterpolationDesign design,
-                        std::size_t cacheBytes)
-        : mBackground(grid->background()), mCache(std::move(grid), std::move(design), cacheBytes) {}
+                        const std::optional<DensityBand>& mostlyRead, std::size_t cacheBytes)
+        : mBackground(grid->background()),
+          mCache(std::move(grid), std::move(design), mostlyRead, cacheBytes) {}
 
     double value(const openvdb::Vec3d& index) const override {
         return BrickProbe(mCache, mBackground).value(index);
@@ -118,14 +120,15 @@ std::unique_ptr<Reconstruction> makeBrickReconstruction(openvdb::FloatGrid::Cons
                                           inShort(options.tolerance) + "; it must be 1e-6 to 0.1");
     }
     return std::make_unique<BrickReconstruction>(
-        std::move(grid), designInterpolation(options.filter, options.tolerance),
+        std::move(grid), designInterpolation(options.filter, options.tolerance), options.mostlyRead,
         options.cacheBytes);
 }
 
-std::unique_ptr<Reconstruction> makeSplineReconstruction(openvdb::FloatGrid::ConstPtr grid,
-                                                         std::size_t cacheBytes) {
+std::unique_ptr<Reconstruction> makeSplineReconstruction(
+    openvdb::FloatGrid::ConstPtr grid, std::size_t cacheBytes,
+    const std::optional<DensityBand>& mostlyRead) {
     requireGrid(grid);
-    return std::make_unique<BrickReconstruction>(std::move(grid), splineInterpolation(),
+    return std::make_unique<BrickReconstruction>(std::move(grid), splineInterpolation(), mostlyRead,
                                                  cacheBytes);
 }
 

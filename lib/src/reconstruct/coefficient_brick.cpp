@@ -3,20 +3,38 @@
 #include "core/instruction_sets.h"
 #include "core/lanes.h"
 #include "grid/copy_box.h"
+#include "reconstruct/nodes_in_band.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 namespace bandvox {
 
 namespace {
 
-int nodesAlong(const SpreadingKernel& kernel) {
-    return CoefficientBrick::kSide + kernel.width();
-}
+// Boxes that hold more of a brick than this are not worth the making.
+constexpr double kNearlyWhole = 0.75;
 
-int pitchOf(const SpreadingKernel& kernel) {
-    return CoefficientBrick::kSide + kernel.paddedWidth();
+const openvdb::CoordBBox kWholeBrick =
+    openvdb::CoordBBox::createCube(openvdb::Coord(0), CoefficientBrick::kSide);
+
+// The voxels of a brick, relative to its first, in which places are mostly read.
+openvdb::CoordBBox mostlyReadVoxels(
+    const openvdb::tree::ValueAccessor<const openvdb::FloatTree, false>& values,
+    const openvdb::Coord& origin, const DensityBand& band) {
+    openvdb::CoordBBox nodes = openvdb::CoordBBox::createCube(origin, CoefficientBrick::kSide);
+    nodes.expand(1);
+    nodes = nodesInBand(values, nodes, band);
+    if (nodes.empty()) return kWholeBrick;
+    // A search ends up to a voxel from places whose nearest node is in the band: voxel v reaches
+    // from node v to the next.
+    openvdb::CoordBBox voxels(nodes.min() - origin - openvdb::Coord(2),
+                              nodes.max() - origin + openvdb::Coord(1));
+    voxels.intersect(kWholeBrick);
+    const bool isWorth = !voxels.empty() && static_cast<double>(voxels.volume()) <
+                                                kNearlyWhole * double(kWholeBrick.volume());
+    return isWorth ? voxels : kWholeBrick;
 }
 
 // `count` rows of `length` outputs each, so far apart.
@@ -96,29 +114,35 @@ void convolveSingle(const float* in, float* out, const ConvolutionRows& rows, st
 }  // namespace
 
 std::size_t CoefficientBrick::bytes(const SpreadingKernel& kernel) {
-    const std::size_t nodes = nodesAlong(kernel);
-    return nodes * nodes * pitchOf(kernel) * sizeof(float) + sizeof(CoefficientBrick);
+    const std::size_t nodes = kSide + kernel.width(), pitch = kSide + kernel.paddedWidth();
+    return nodes * nodes * pitch * sizeof(float) + sizeof(CoefficientBrick);
 }
 
 CoefficientBrick::CoefficientBrick(const openvdb::FloatGrid& grid, const openvdb::Coord& brick,
-                                   const InterpolationDesign& design, BrickScratch& scratch)
-    : mNodes(nodesAlong(design.kernel)), mPitch(pitchOf(design.kernel)) {
-    // Copy the lattice under the brick and its halo. The kernel's last nodes along z, which lie
-    // in the padding, have no weight and stay 0.
-    const int reach = design.reach();
-    const int side = mNodes + 2 * reach;
-    const openvdb::Coord origin(brick[0] * kSide, brick[1] * kSide, brick[2] * kSide);
-    const std::size_t rowLength = side, plane = rowLength * side;
-    scratch.lattice.resize(plane * side);
-    const openvdb::CoordBBox cube =
-        openvdb::CoordBBox::createCube(origin.offsetBy(firstNode(design.kernel) - reach), side);
+                                   const InterpolationDesign& design,
+                                   const std::optional<DensityBand>& mostlyRead,
+                                   BrickScratch& scratch) {
     const openvdb::tree::ValueAccessor<const openvdb::FloatTree, false> values(grid.tree());
-    if (copyBox(values, cube, scratch.lattice.data(), plane, rowLength)) {
+    const openvdb::Coord origin(brick[0] * kSide, brick[1] * kSide, brick[2] * kSide);
+    const openvdb::CoordBBox voxels =
+        mostlyRead ? mostlyReadVoxels(values, origin, *mostlyRead) : kWholeBrick;
+    mBegin = voxels.min().asVec3d();
+    mEnd = voxels.max().offsetBy(1).asVec3d();
+
+    // Copy the lattice under them and a halo.
+    const int reach = design.reach();
+    const openvdb::Coord nodes = voxels.dim().offsetBy(design.kernel.width());
+    const openvdb::Coord first = origin + voxels.min().offsetBy(firstNode(design.kernel) - reach);
+    const openvdb::CoordBBox halo(first, first + nodes.offsetBy(2 * reach - 1));
+    const std::size_t rowLength = halo.dim()[2], plane = rowLength * halo.dim()[1];
+    scratch.lattice.resize(plane * halo.dim()[0]);
+    if (copyBox(values, halo, scratch.lattice.data(), plane, rowLength)) {
         mConstant = scratch.lattice.front();
         return;
     }
 
-    // Convolve along x, then y, then z; each pass leaves fewer planes, rows, or nodes.
+    // Convolve along x, then y, then z; each pass leaves fewer planes, rows, or nodes. The
+    // kernel's last nodes along z, which lie in the padding, have no weight and are 0.
     const std::vector<float> single(design.prefilter.begin(), design.prefilter.end());
     const auto pass = [&](const float* in, float* out, const ConvolutionRows& rows,
                           std::size_t stride) {
@@ -128,32 +152,34 @@ CoefficientBrick::CoefficientBrick(const openvdb::FloatGrid& grid, const openvdb
             convolve(in, out, rows, stride, design.prefilter);
         }
     };
-    const std::size_t nodes = mNodes, pitch = mPitch;
-    scratch.filtered.resize(nodes * plane);
-    pass(scratch.lattice.data(), scratch.filtered.data(), {1, nodes * plane, 0, 0}, plane);
+    mRows = nodes[1];
+    mPitch = voxels.dim()[2] + design.kernel.paddedWidth();
+    const std::size_t planes = nodes[0], rows = nodes[1], length = nodes[2], pitch = mPitch;
+    scratch.filtered.resize(planes * plane);
+    pass(scratch.lattice.data(), scratch.filtered.data(), {1, planes * plane, 0, 0}, plane);
     pass(scratch.filtered.data(), scratch.lattice.data(),
-         {nodes, nodes * rowLength, plane, nodes * rowLength}, rowLength);
-    mCoefficients = std::make_unique_for_overwrite<float[]>(nodes * nodes * pitch);
-    pass(scratch.lattice.data(), mCoefficients.get(), {nodes * nodes, nodes, rowLength, pitch}, 1);
-    for (std::size_t row = 0; row < nodes * nodes; ++row) {
-        std::fill_n(&mCoefficients[row * pitch + nodes], pitch - nodes, 0.0F);
+         {planes, rows * rowLength, plane, rows * rowLength}, rowLength);
+    mCoefficients = std::make_unique_for_overwrite<float[]>(planes * rows * pitch);
+    pass(scratch.lattice.data(), mCoefficients.get(), {planes * rows, length, rowLength, pitch}, 1);
+    for (std::size_t row = 0; row < planes * rows; ++row) {
+        std::fill_n(&mCoefficients[row * pitch + length], pitch - length, 0.0F);
     }
 }
 
 double CoefficientBrick::value(const SpreadingKernel& kernel, const openvdb::Vec3d& local) const {
-    return !mCoefficients ? mConstant : sumValue(nodes(), kernel, local);
+    return !mCoefficients ? mConstant : sumValue(nodes(), kernel, local - mBegin);
 }
 
 DensityAt CoefficientBrick::evaluate(const SpreadingKernel& kernel,
                                      const openvdb::Vec3d& local) const {
     if (!mCoefficients) return {mConstant, {0, 0, 0}};
-    return sumGradient(nodes(), kernel, local);
+    return sumGradient(nodes(), kernel, local - mBegin);
 }
 
 DensityExpansion CoefficientBrick::expand(const SpreadingKernel& kernel,
                                           const openvdb::Vec3d& local) const {
     if (!mCoefficients) return {mConstant, {0, 0, 0}, openvdb::Mat3d::zero()};
-    return sumHessian(nodes(), kernel, local);
+    return sumHessian(nodes(), kernel, local - mBegin);
 }
 
 }  // namespace bandvox

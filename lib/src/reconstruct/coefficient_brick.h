@@ -3,12 +3,14 @@
 #include "reconstruct/brick_sums.h"
 #include "reconstruct/interpolation_design.h"
 
+#include <bandvox/reconstruct/brick_reconstruction.h>
 #include <bandvox/reconstruct/reconstruction.h>
 
 #include <openvdb/openvdb.h>
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace bandvox {
@@ -20,16 +22,26 @@ struct BrickScratch {
 };
 
 /// The coefficients c = a * f of one brick of the lattice, and the sums f~(x) = Σ c_l ψ(l - x)
-/// over them. Its content depends on the lattice and the brick's place alone.
+/// over them. Its sums depend on the lattice and the brick's place alone.
 class CoefficientBrick {
   public:
     /// Voxels along a side; brick b holds the places [b·kSide, (b + 1)·kSide).
     static constexpr int kSide = 32;
 
+    /// `mostlyRead`, if given, leaves out what is farther than a voxel or two from nodes of such
+    /// densities.
     CoefficientBrick(const openvdb::FloatGrid& grid, const openvdb::Coord& brick,
-                     const InterpolationDesign& design, BrickScratch& scratch);
+                     const InterpolationDesign& design,
+                     const std::optional<DensityBand>& mostlyRead, BrickScratch& scratch);
 
-    /// The density at a place given relative to the brick's first voxel, within [0, kSide).
+    /// False for places that were left out; a place is given relative to the brick's first voxel,
+    /// within [0, kSide).
+    bool holds(const openvdb::Vec3d& local) const {
+        return local[0] >= mBegin[0] && local[0] < mEnd[0] && local[1] >= mBegin[1] &&
+               local[1] < mEnd[1] && local[2] >= mBegin[2] && local[2] < mEnd[2];
+    }
+
+    /// The density at a place that it holds.
     double value(const SpreadingKernel& kernel, const openvdb::Vec3d& local) const;
     /// The density and its gradient there.
     DensityAt evaluate(const SpreadingKernel& kernel, const openvdb::Vec3d& local) const;
@@ -41,12 +53,13 @@ class CoefficientBrick {
     static std::size_t bytes(const SpreadingKernel& kernel);
 
   private:
-    BrickNodes nodes() const { return {mCoefficients.get(), mNodes, mPitch}; }
+    BrickNodes nodes() const { return {mCoefficients.get(), mRows, mPitch}; }
 
-    int mNodes;                              // along x and y
-    int mPitch;                              // along z, with room for the kernel's padding
+    openvdb::Vec3d mBegin, mEnd;             // of the places that it holds, whole voxels
+    int mRows = 0;                           // along y
+    int mPitch = 0;                          // along z, with room for the kernel's padding
     float mConstant = 0;                     // of a brick without coefficients
-    std::unique_ptr<float[]> mCoefficients;  // [mNodes][mNodes][mPitch]; none if all are the same
+    std::unique_ptr<float[]> mCoefficients;  // [x][mRows][mPitch]; none if all are the same
 };
 
 }  // namespace bandvox

@@ -32,11 +32,11 @@ openvdb::BBoxd boxOfBlocks(const BlockTree& blocks) {
 }
 
 /// Calls `visit(t0, t1, value)` for each active block on the way of a ray, in order; stops when it
-/// returns true. `box` holds all blocks.
+/// returns true. `box` is that of the blocks.
 template <typename BlockTree, typename Visitor>
 void walkBlocks(const BlockTree& blocks, const openvdb::BBoxd& box, BlockRay blockRay,
                 const Visitor& visit) {
-    if (blocks.empty() || !blockRay.clip(box)) return;
+    if (box.empty() || !blockRay.clip(box)) return;
 
     // Step over the tree's leaves, and inside each over its blocks.
     using Leaf = typename BlockTree::LeafNodeType;

@@ -225,6 +225,17 @@ ClearDistance ClearDistance::ofGaussian(double iso, double cutoff, double densit
                          [&](double below) { return distanceFromFace(iso - below) - surface; });
 }
 
+double ClearDistance::aboveWithin(double voxels) const {
+    const auto farther = std::upper_bound(mVoxels.begin(), mVoxels.end(), voxels);
+    return -double(farther - mVoxels.begin()) / mScale;
+}
+
+DensityBand askedBand(double iso, const ClearDistance& outside, const ClearDistance& inside) {
+    const double reach = kFarthestNode + kShortestStep;
+    return {static_cast<float>(iso + outside.aboveWithin(reach)),
+            static_cast<float>(iso - inside.aboveWithin(reach))};
+}
+
 std::optional<RayHit> RayMarch::firstHit(const Ray& ray, DensityProbe& density, double end) const {
     return marchAlong(ray, mBlocks, {density, mIso, &mClear, mLattice}, 1, end);
 }

@@ -2,6 +2,7 @@
 
 #include "render/surface_blocks.h"
 
+#include <bandvox/reconstruct/brick_reconstruction.h>
 #include <bandvox/reconstruct/reconstruction.h>
 #include <bandvox/render/camera.h>
 
@@ -45,6 +46,9 @@ class ClearDistance {
         return mVoxels[static_cast<std::size_t>(place)];
     }
 
+    /// How far above iso a density is, not positive, beyond which the surface is farther than this.
+    double aboveWithin(double voxels) const;
+
   private:
     ClearDistance(double depth, double densityError, const std::function<double(double)>& distance);
 
@@ -52,6 +56,10 @@ class ClearDistance {
     double mScale;                            // steps per density
     std::array<float, kSteps + 1> mVoxels{};  // by density below iso, rounded down
 };
+
+/// The densities of the nodes that are nearest to the places at which marches ask for the density,
+/// of all but a few.
+DensityBand askedBand(double iso, const ClearDistance& outside, const ClearDistance& inside);
 
 /// Finds where lines of sight enter and leave {density ≥ iso}. All in index coordinates, `t` in
 /// lengths of a ray's direction.

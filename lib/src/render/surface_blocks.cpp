@@ -239,7 +239,7 @@ std::vector<SurfaceBlocks::Group> SurfaceBlocks::groups() const {
 
 std::optional<double> SurfaceBlocks::entry(const Ray& ray) const {
     BlockRay blockRay = inBlocks(ray, kSide);
-    if (mBlocks.empty() || !blockRay.clip(mBox)) return std::nullopt;
+    if (empty() || !blockRay.clip(mBox)) return std::nullopt;
     return blockRay.t0();
 }
 

@@ -20,7 +20,7 @@ class SurfaceBlocks {
     /// background.
     SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold);
 
-    bool empty() const { return mBlocks.empty(); }
+    bool empty() const { return mBox.empty(); }
 
     /// The largest value of the lattice.
     double maximum() const { return mMaximum; }

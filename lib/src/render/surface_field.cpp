@@ -177,28 +177,33 @@ DrawableGrid makeDrawable(const openvdb::FloatGrid::ConstPtr& grid,
 
 std::unique_ptr<Reconstruction> readLattice(const openvdb::FloatGrid::ConstPtr& grid,
                                             const std::optional<DensityMetadata>& metadata,
-                                            const PictureOptions& options) {
-    if (!metadata) return makeSplineReconstruction(grid, cacheBytes(options));
+                                            const PictureOptions& options,
+                                            const std::optional<DensityBand>& mostlyRead) {
+    if (!metadata) return makeSplineReconstruction(grid, cacheBytes(options), mostlyRead);
     const double tolerance =
         options.readsFinely ? options.tolerance : std::max(metadata->tolerance, options.tolerance);
-    return readFiltered(grid,
-                        {{metadata->order, metadata->cutoff}, tolerance, cacheBytes(options)});
+    return readFiltered(
+        grid, {{metadata->order, metadata->cutoff}, tolerance, cacheBytes(options), mostlyRead});
 }
 
 SurfaceField readSurface(const DrawableGrid& drawable, double maximum,
                          const PictureOptions& options) {
-    auto reconstruction = readLattice(drawable.grid, drawable.metadata, options);
+    const auto field = [&](double slope, const ClearDistance& outside,
+                           const ClearDistance& inside) -> SurfaceField {
+        const DensityBand asked = askedBand(drawable.iso, outside, inside);
+        return {readLattice(drawable.grid, drawable.metadata, options, asked), slope, outside,
+                inside};
+    };
     const double iso = drawable.iso;
     if (drawable.metadata) {
         const double slope = faceGradient({drawable.metadata->order, drawable.metadata->cutoff});
         const auto [outside, inside] = clearDistances(drawable, maximum, slope);
-        return {std::move(reconstruction), slope, outside, inside};
+        return field(slope, outside, inside);
     }
     const double step = largestStep(*drawable.grid);
     const double steepest = (drawable.isLevelSet ? kSplineMargin : kSplineSteepest) * step;
-    return {std::move(reconstruction), step,
-            ClearDistance::ofSlope(iso, drawable.grid->background(), steepest, 0),
-            ClearDistance::ofSlope(std::max(maximum, iso + step), iso, steepest, 0)};
+    return field(step, ClearDistance::ofSlope(iso, drawable.grid->background(), steepest, 0),
+                 ClearDistance::ofSlope(std::max(maximum, iso + step), iso, steepest, 0));
 }
 
 double surfaceThreshold(const DrawableGrid& drawable) {

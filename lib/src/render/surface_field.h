@@ -42,10 +42,11 @@ SurfaceField readSurface(const DrawableGrid& drawable, double maximum,
                          const PictureOptions& options);
 
 /// A lattice as a continuous field: by the filter that its metadata name, or else by the cubic
-/// spline. Throws Error(ErrorKind::Input) if the filter leaves too much to be read.
-std::unique_ptr<Reconstruction> readLattice(const openvdb::FloatGrid::ConstPtr& grid,
-                                            const std::optional<DensityMetadata>& metadata,
-                                            const PictureOptions& options);
+/// spline. `mostlyRead` is as for makeBrickReconstruction. Throws Error(ErrorKind::Input) if the
+/// filter leaves too much to be read.
+std::unique_ptr<Reconstruction> readLattice(
+    const openvdb::FloatGrid::ConstPtr& grid, const std::optional<DensityMetadata>& metadata,
+    const PictureOptions& options, const std::optional<DensityBand>& mostlyRead = std::nullopt);
 
 /// The lattice value beyond which the surface may be near: between the nodes the field can rise
 /// above them.

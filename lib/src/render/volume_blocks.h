@@ -22,7 +22,7 @@ class VolumeBlocks {
     /// background of `grid` is 0.
     VolumeBlocks(const openvdb::FloatGrid& grid, const std::optional<ExponentialFilter>& filter);
 
-    bool empty() const { return mBlocks.empty(); }
+    bool empty() const { return mBox.empty(); }
     /// False if a value of the lattice is not finite, or so large that sums of them are not.
     bool finite() const { return mFinite; }
 

@@ -7,8 +7,14 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 
 namespace bandvox {
+
+/// Densities from `low` up to `high`.
+struct DensityBand {
+    float low, high;
+};
 
 /// How a lattice is read as a continuous density.
 struct BrickReconstructionOptions {
@@ -16,6 +22,10 @@ struct BrickReconstructionOptions {
     double tolerance = 1.5e-5;            ///< error allowed: of the value in density, of the
                                           ///< gradient relative to a flat face's; 1e-6 to 0.1
     std::size_t cacheBytes = 512u << 20;  ///< memory for bricks; room for 16 is always taken
+    /// If given, most places that are read lie next to nodes of such densities, as those near a
+    /// surface do: then bricks are made ready there alone, as long as nobody reads elsewhere. What
+    /// is read is the same.
+    std::optional<DensityBand> mostlyRead;
 };
 
 /// Band-limited interpolation in bricks of 32³ voxels: when a brick is first needed, its lattice
@@ -35,9 +45,10 @@ std::unique_ptr<Reconstruction> makeBrickReconstruction(openvdb::FloatGrid::Cons
 /// to node it overshoots by up to a quarter of the jump. Inactive voxels and tiles count as they
 /// are.
 ///
-/// M. Unser, A. Aldroubi, M. Eden: "B-Spline Signal Processing" (1993). Throws
-/// Error(ErrorKind::Usage) if `grid` is null.
-std::unique_ptr<Reconstruction> makeSplineReconstruction(openvdb::FloatGrid::ConstPtr grid,
-                                                         std::size_t cacheBytes = 512u << 20);
+/// M. Unser, A. Aldroubi, M. Eden: "B-Spline Signal Processing" (1993). `mostlyRead` is as for
+/// makeBrickReconstruction. Throws Error(ErrorKind::Usage) if `grid` is null.
+std::unique_ptr<Reconstruction> makeSplineReconstruction(
+    openvdb::FloatGrid::ConstPtr grid, std::size_t cacheBytes = 512u << 20,
+    const std::optional<DensityBand>& mostlyRead = std::nullopt);
 
 }  // namespace bandvox
