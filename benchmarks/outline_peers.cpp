@@ -3,6 +3,8 @@
 // in advance and without being timed. Parallel views from all around, by turns. `outline_peers
 // [AZIMUTHS [FILE.json]]`
 
+#include "build_places.h"
+
 #include <bandvox/outline/patches_to_outline.h>
 #include <bandvox/source/read_patches.h>
 
@@ -72,8 +74,8 @@ int main(int count, char** arguments) {
         std::fprintf(stderr, "found '%s' azimuths; expected 1 or more\n", arguments[1]);
         return 2;
     }
-    const PatchModel model =
-        readPatches(std::filesystem::path(BANDVOX_SOURCE_DIR) / "examples" / "data" / "teapot.bpt");
+    const PatchModel model = readPatches(std::filesystem::path(build_places::sources()) /
+                                         "examples" / "data" / "teapot.bpt");
     const TopoDS_Shape shape = shapeOf(model);
     const BRepMesh_IncrementalMesh mesh(shape, kTriangles * 6.4);
     const auto projectorOf = [](const gp_Dir& from) {

@@ -1,5 +1,7 @@
 // The transforms of a part, the fit of scattered values, and the lines of free-form surfaces.
 
+#include "build_places.h"
+
 #include <bandvox/outline/patches_to_outline.h>
 #include <bandvox/scatter/fit_surface.h>
 #include <bandvox/source/read_patches.h>
@@ -70,8 +72,8 @@ BENCHMARK(fitScatteredValues)->Arg(100)->Arg(10000)->Unit(benchmark::kMillisecon
 
 // All lines of Newell's teapot, with what hides them.
 void drawTeapot(benchmark::State& state) {
-    const PatchModel teapot =
-        readPatches(std::filesystem::path(BANDVOX_SOURCE_DIR) / "examples" / "data" / "teapot.bpt");
+    const PatchModel teapot = readPatches(std::filesystem::path(build_places::sources()) /
+                                          "examples" / "data" / "teapot.bpt");
     OutlineOptions options;
     options.camera.projection = CameraOptions::Projection::Orthographic;
     options.camera.from = {1, -2, 0.7};

@@ -1,5 +1,6 @@
 // The pages in docs/ show code and output that are those of the examples.
 
+#include "build_places.h"
 #include "run_command.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = BANDVOX_SOURCE_DIR;
+const fs::path kRoot = build_places::sources();
 
 std::vector<fs::path> pages() {
     std::vector<fs::path> found;
@@ -61,10 +62,10 @@ TEST(Docs, CodeIsThatOfTheExamples) {
 }
 
 // Where the examples are not built, there is nothing to run.
-#ifdef BANDVOX_SHAPE_TO_SCREEN
+#ifdef BANDVOX_WITH_SHAPE_TO_SCREEN
 
 TEST(Docs, ShapeToScreenSaysWhatThePageShows) {
-    const RunResult result = runProgram({BANDVOX_SHAPE_TO_SCREEN, "shape:torus"});
+    const RunResult result = runProgram({build_places::shapeToScreen(), "shape:torus"});
     EXPECT_EQ(result.status, 0) << result.err;
     const std::vector<std::string> shown =
         blocksOf(readText(kRoot / "docs/math/pruned-transforms.md"), "text");
@@ -73,8 +74,8 @@ TEST(Docs, ShapeToScreenSaysWhatThePageShows) {
 }
 
 TEST(Docs, ShapeToScreenRefusesWhatItDoesNotKnow) {
-    EXPECT_EQ(runProgram({BANDVOX_SHAPE_TO_SCREEN}).status, 2);
-    EXPECT_NE(runProgram({BANDVOX_SHAPE_TO_SCREEN, "shape:none"}).status, 0);
+    EXPECT_EQ(runProgram({build_places::shapeToScreen()}).status, 2);
+    EXPECT_NE(runProgram({build_places::shapeToScreen(), "shape:none"}).status, 0);
 }
 
 #endif

@@ -1,5 +1,6 @@
 // What the info command tells of grids of any type.
 
+#include "build_places.h"
 #include "run_command.h"
 #include "sample_files.h"
 
@@ -91,9 +92,10 @@ TEST(Info, TakesGridsOfAnyType) {
 TEST(Info, ReadsTheStandardInput) {
     const TemporaryFolder folder;
     writeSeveralGrids(folder / "several.vdb");
-    const RunResult result = runProgram(
-        {"/bin/sh", "-c", "cat several.vdb | \"$0\" info stdin.vdb --json", BANDVOX_EXECUTABLE},
-        {.folder = folder.path()});
+    const RunResult result =
+        runProgram({"/bin/sh", "-c", "cat several.vdb | \"$0\" info stdin.vdb --json",
+                    build_places::command()},
+                   {.folder = folder.path()});
     ASSERT_EQ(result.status, 0) << result.err;
     const Json report = Json::parse(result.out);
     EXPECT_EQ(report.at("grids").size(), 4u);

@@ -1,5 +1,6 @@
 // Asking the command to stop in the middle of its work.
 
+#include "build_places.h"
 #include "run_command.h"
 
 #include <gtest/gtest.h>
@@ -86,7 +87,7 @@ TEST(Interrupt, IgnoredSignalStaysIgnored) {
     const RunResult result = runProgram(
         {"/bin/sh", "-c",
          "trap '' HUP; exec \"$0\" convert shape:torus -o t.vdb -r 128 --progress always",
-         BANDVOX_EXECUTABLE},
+         build_places::command()},
         interruptIn(folder, SIGHUP));
     EXPECT_TRUE(result.signalSent);
     EXPECT_EQ(result.status, 0) << result.err;

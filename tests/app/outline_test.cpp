@@ -1,5 +1,6 @@
 // What the outline command draws, and which files it refuses.
 
+#include "build_places.h"
 #include "run_command.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +22,7 @@ namespace {
 using Names = std::vector<std::string>;
 
 const std::string kTeapotFile =
-    (std::filesystem::path(BANDVOX_SOURCE_DIR) / "examples" / "data" / "teapot.bpt").string();
+    (std::filesystem::path(build_places::sources()) / "examples" / "data" / "teapot.bpt").string();
 
 const std::string kFlatPatch = "1\n1 1\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
 

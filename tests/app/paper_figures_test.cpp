@@ -1,5 +1,6 @@
 // The example that draws and measures the paper's figures.
 
+#include "build_places.h"
 #include "run_command.h"
 
 #include <OpenImageIO/imagebuf.h>
@@ -9,7 +10,7 @@
 #include <sstream>
 
 // Where the examples are not built, there is nothing to test.
-#ifdef BANDVOX_PAPER_FIGURES
+#ifdef BANDVOX_WITH_PAPER_FIGURES
 
 namespace bandvox::app_test {
 namespace {
@@ -19,7 +20,8 @@ class PaperFigures : public testing::Test {
   protected:
     static void SetUpTestSuite() {
         sFolder = new TemporaryFolder;
-        sResult = runProgram({BANDVOX_PAPER_FIGURES, (*sFolder / "figures").string(), "--quick"});
+        sResult =
+            runProgram({build_places::paperFigures(), (*sFolder / "figures").string(), "--quick"});
     }
     static void TearDownTestSuite() {
         delete sFolder;
@@ -178,7 +180,7 @@ TEST_F(PaperFigures, FlatFacesOnlyRing) {
 TEST(PaperFiguresUsage, RefusesOtherArguments) {
     for (const std::vector<std::string>& arguments :
          {std::vector<std::string>{}, {"out", "--fast"}, {"--quick"}}) {
-        std::vector<std::string> command{BANDVOX_PAPER_FIGURES};
+        std::vector<std::string> command{build_places::paperFigures()};
         command.insert(command.end(), arguments.begin(), arguments.end());
         const RunResult result = runProgram(command);
         EXPECT_EQ(result.status, 2);

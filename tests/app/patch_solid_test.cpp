@@ -1,5 +1,6 @@
 // What convert makes of free-form surfaces, and which it refuses.
 
+#include "build_places.h"
 #include "run_command.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +13,7 @@ namespace bandvox::app_test {
 namespace {
 
 const std::string kTeapotBpt =
-    (std::filesystem::path(BANDVOX_SOURCE_DIR) / "examples" / "data" / "teapot.bpt").string();
+    (std::filesystem::path(build_places::sources()) / "examples" / "data" / "teapot.bpt").string();
 
 // A quarter of a cylinder's mantle, rational, of degrees 2 and 1.
 const std::string kQuarter =

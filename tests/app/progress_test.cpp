@@ -1,5 +1,6 @@
 // How far the work is, as it is shown on a terminal and to a program that reads along.
 
+#include "build_places.h"
 #include "run_command.h"
 #include "sample_files.h"
 
@@ -118,8 +119,8 @@ TEST(Progress, IsABarOnATerminal) {
     if (!hasProgram("script")) GTEST_SKIP() << "script, which makes a terminal, is not here";
     const TemporaryFolder folder;
     const RunResult result = runProgram(
-        {"script", "-qec", std::string(BANDVOX_EXECUTABLE) + " convert shape:cube -o c.vdb -r 16",
-         "/dev/null"},
+        {"script", "-qec",
+         std::string(build_places::command()) + " convert shape:cube -o c.vdb -r 16", "/dev/null"},
         {.folder = folder.path()});
     EXPECT_EQ(result.status, 0) << result.out;
     EXPECT_EQ(result.out.find("Progress: "), std::string::npos) << result.out;

@@ -1,5 +1,7 @@
 #include "run_command.h"
 
+#include "build_places.h"
+
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <linux/capability.h>
@@ -122,7 +124,7 @@ RunResult runProgram(const std::vector<std::string>& arguments, const RunOptions
 }
 
 RunResult runBandvox(std::vector<std::string> arguments, const RunOptions& options) {
-    arguments.insert(arguments.begin(), BANDVOX_EXECUTABLE);
+    arguments.insert(arguments.begin(), build_places::command());
     return runProgram(arguments, options);
 }
 

@@ -1,5 +1,6 @@
 // What the view command writes: a page that holds its data, and nothing that gets out of hand.
 
+#include "build_places.h"
 #include "run_command.h"
 #include "sample_files.h"
 
@@ -148,7 +149,7 @@ TEST_F(View, WritesAPageThatHoldsTheGrid) {
 }
 
 TEST_F(View, PageIsMadeOfTheSourcesThatAreThere) {
-    const std::string root = BANDVOX_SOURCE_DIR;
+    const std::string root = build_places::sources();
     const RunResult digest = runProgram(
         {"/bin/sh", "-c",
          "LC_ALL=C; cat index.html package-lock.json tsconfig.json vite.config.js src/* | "
@@ -264,7 +265,7 @@ TEST_F(View, WarnsOfWhatIsNotSeen) {
 TEST_F(View, ReadsTheStandardInputAndWritesToAPipe) {
     convert("t.vdb");
     const RunResult result = runProgram(
-        {"/bin/sh", "-c", "\"$0\" view stdin.vdb -o /dev/stdout < t.vdb", BANDVOX_EXECUTABLE},
+        {"/bin/sh", "-c", "\"$0\" view stdin.vdb -o /dev/stdout < t.vdb", build_places::command()},
         {.folder = mFolder.path()});
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(Json::parse(headerText(result.out)).at("file"), "stdin.vdb");

@@ -1,5 +1,6 @@
 // What the voxelize command writes and reports.
 
+#include "build_places.h"
 #include "run_command.h"
 #include "sample_files.h"
 
@@ -25,8 +26,8 @@ class Voxelize : public testing::Test {
 
     /// With no driver for EGL.
     RunResult voxelizeWithoutDriver(Names arguments) {
-        const Names start{"env", "__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null", BANDVOX_EXECUTABLE,
-                          "voxelize"};
+        const Names start{"env", "__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null",
+                          build_places::command(), "voxelize"};
         arguments.insert(arguments.begin(), start.begin(), start.end());
         return runProgram(arguments, {.folder = mFolder.path()});
     }

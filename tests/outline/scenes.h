@@ -1,5 +1,6 @@
 #pragma once
 
+#include "build_places.h"
 #include "outline/sample_surfaces.h"
 
 #include <bandvox/outline/patches_to_outline.h>
@@ -21,7 +22,7 @@ struct Scene {
 };
 
 inline std::vector<BezierPatch> teapot() {
-    const auto folder = std::filesystem::path(BANDVOX_SOURCE_DIR) / "examples" / "data";
+    const auto folder = std::filesystem::path(build_places::sources()) / "examples" / "data";
     return readPatches(folder / "teapot.bpt").patches;
 }
 
