@@ -10,6 +10,7 @@
 #include "convert_to_array.h"
 #include "convert_volume.h"
 #include "file_endings.h"
+#include "memory_limit.h"
 #include "mesh_output.h"
 #include "output_kind.h"
 #include "stack_input.h"
@@ -90,6 +91,7 @@ const CommandTable& convertTable() {
              "Store 16-bit values, which changes densities by up to 2.5e-4, above 1 by 5e-4.",
              "Output"},
             compressionEntry(),
+            memoryLimitEntry(),
             shardEntry(),
             adaptivityEntry(),
         });

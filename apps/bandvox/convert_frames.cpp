@@ -9,6 +9,7 @@
 #include "convert_to_mesh.h"
 #include "convert_volume.h"
 #include "frame_pattern.h"
+#include "memory_limit.h"
 #include "words.h"
 
 #include <bandvox/grid/write_image_stack.h>
@@ -243,6 +244,7 @@ std::vector<OptionEntry> frameEntries() {
 }
 
 void convertOne(ConvertJob& job) {
+    readMemoryLimit(job.line());  // refuses
     switch (conversionOf(job.line())) {
         case Conversion::SolidToVolume:
         case Conversion::SolidToMesh:

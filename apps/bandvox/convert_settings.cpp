@@ -37,7 +37,8 @@ const std::string kLattice = "lattice:";
 
 // Options of convert that do not change what is in the file. What all commands take does not
 // either.
-constexpr std::array kWithoutEffect{"output", "frames", "keep-going", "skip-existing", "like"};
+constexpr std::array kWithoutEffect{"output",        "frames", "keep-going",
+                                    "skip-existing", "like",   "memory-limit"};
 
 struct Setting {
     std::string value;

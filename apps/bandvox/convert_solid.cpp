@@ -16,6 +16,7 @@
 
 #include <bandvox/bandlimit/field_to_density.h>
 #include <bandvox/bandlimit/soup_to_density.h>
+#include <bandvox/core/memory.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/source/shapes.h>
 
@@ -109,6 +110,9 @@ ConvertRequest parseConvert(const CommandLine& line) {
     request.overlap = static_cast<Overlap>(line.choice("overlap", 0));
     density.sumOverlaps = request.overlap == Overlap::Sum;
 
+    request.target = {request.output.path, request.output.write, request.output.memoryLimit};
+    request.peakBefore = peakMemory();
+
     request.color = line.has("color");
     if (request.color && request.isPatches) {
         throw Error(ErrorKind::Usage, "--color takes a mesh with colours, and '" + request.input +
@@ -191,6 +195,11 @@ void convertSolid(ConvertJob& job) {
     if (!job.begin()) return;
     CommandRun& run = job.run();
     std::optional<AtomicFile> file = request.output.openFile();
+    if (request.output.memoryLimit > 0 && file->inPlace()) {
+        throw Error(ErrorKind::Usage, "--memory-limit is for files: '" +
+                                          request.output.path.string() +
+                                          "' is a pipe or a device, which has no room beside it");
+    }
     ConvertedGrids grids = solidToGrids(run, request);
     DensityResult& result = grids.density;
     requireTolerance(request, result);

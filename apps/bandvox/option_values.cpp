@@ -100,6 +100,26 @@ int OptionValues::wholeNumber(const std::string& name, int low, int high, int fa
     return *value;
 }
 
+std::int64_t OptionValues::bytes(const std::string& name, std::int64_t least,
+                                 std::int64_t fallback) const {
+    const auto given = textOrDefault(name);
+    if (!given) return fallback;
+    constexpr std::string_view kUnits = "KMGT";
+    constexpr double kMost = 1e18;
+    std::string_view number = *given;
+    double unit = 1;
+    const std::size_t place = kUnits.find(number.back());
+    if (place != std::string_view::npos) {
+        unit = std::pow(1024.0, static_cast<double>(place + 1));
+        number.remove_suffix(1);
+    }
+    const auto value = parseNumber(number);
+    if (!value || *value * unit < static_cast<double>(least) || *value * unit > kMost) {
+        fail(name, "a size of at least " + std::to_string(least) + " bytes, as 800M or 2G");
+    }
+    return static_cast<std::int64_t>(*value * unit);
+}
+
 std::optional<openvdb::Vec3d> OptionValues::vector(const std::string& name,
                                                    const Range& range) const {
     const auto given = textOrDefault(name);

@@ -4,6 +4,7 @@
 
 #include <openvdb/Types.h>
 
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
@@ -66,6 +67,9 @@ class OptionValues {
 
     double number(const std::string& name, const Range& range, double fallback) const;
     int wholeNumber(const std::string& name, int low, int high, int fallback) const;
+    /// A number of bytes, of at least `least`, written as 800M or 1.5G: K, M, G and T are powers of
+    /// 1024.
+    std::int64_t bytes(const std::string& name, std::int64_t least, std::int64_t fallback) const;
     /// Three numbers separated by commas.
     std::optional<openvdb::Vec3d> vector(const std::string& name, const Range& range = {}) const;
     /// `least` to `most` numbers separated by commas; `expected` is what the error says of them.

@@ -1,5 +1,6 @@
 #include "solid_density.h"
 
+#include "memory_limit.h"
 #include "words.h"
 
 #include <bandvox/bandlimit/surface_to_density.h>
@@ -18,10 +19,19 @@ namespace {
 // word. Samples on faces, which count as inside, come to that at a few tens of voxels.
 constexpr double kSampledVolumeError = 0.02;
 
+DensityResult exactDensity(CommandRun& run, const SolidDensityRequest& request,
+                           const BoundarySource& source) {
+    if (request.target.memoryLimit == 0) {
+        return surfaceToDensity(source, request.density, run.progress());
+    }
+    requireReadWithin(request.target.memoryLimit, request.peakBefore);
+    return surfaceToSpooledDensity(source, request.density, request.target, run.progress());
+}
+
 DensityResult patchesToDensity(CommandRun& run, const SolidDensityRequest& request) {
     const PatchSolid solid = loadPatchSolid(
         run, request.input, {.unite = request.overlap == Overlap::Union, .base = request.base});
-    DensityResult result = surfaceToDensity(*solid.source, request.density, run.progress());
+    DensityResult result = exactDensity(run, request, *solid.source);
     result.metadata.holesCapped = static_cast<int>(solid.report.holes.size());
     return result;
 }
@@ -30,7 +40,7 @@ DensityResult shapeToDensity(CommandRun& run, const SolidDensityRequest& request
     run.say("read     " + request.input);
     const auto boundary = makeShapeBoundary(request.input);
     if (request.route != Route::Sampled) {
-        return surfaceToDensity(*boundary, request.density, run.progress());
+        return exactDensity(run, request, *boundary);
     }
     FieldDensityOptions options;
     options.density = request.density;
@@ -60,12 +70,18 @@ DensityResult meshToDensity(CommandRun& run, const SolidDensityRequest& request,
     DensityResult result;
     if (mesh.soup.triangles.empty()) {
         const MeshSource source(mesh.name, std::move(mesh.solid));
-        result = surfaceToDensity(source, request.density, run.progress());
+        result = exactDensity(run, request, source);
         if (request.oversampleGiven) {
             result.warnings.push_back(
                 "--oversample was not used: caps close the whole mesh, which took the exact route");
         }
     } else {
+        if (request.target.memoryLimit > 0) {
+            throw Error(ErrorKind::Usage,
+                        "--memory-limit is for meshes that caps can close: of '" + request.input +
+                            "' some goes by its winding number, which needs the whole grid in "
+                            "memory; expected --route exact, which caps every hole, or no limit");
+        }
         SoupDensityOptions options;
         options.density = request.density;
         options.density.tolerance = std::min(options.density.tolerance, DensityOptions().tolerance);

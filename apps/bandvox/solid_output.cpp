@@ -1,6 +1,7 @@
 #include "solid_output.h"
 
 #include "convert_volume.h"
+#include "memory_limit.h"
 #include "stack_input.h"
 #include "standard_streams.h"
 #include "volume_options.h"
@@ -61,6 +62,7 @@ SolidOutput readSolidOutput(const CommandLine& line, const std::string& noun) {
     output.levels = readDetailLevels(line);
     output.write.half = line.has("half");
     if (!output.array) output.write.compression = readCompression(line);
+    output.memoryLimit = readMemoryLimit(line);
     return output;
 }
 
@@ -81,7 +83,7 @@ void readDensityOptions(const CommandLine& line, const SolidOutput& output,
 
 void finishDensity(CommandRun& run, const SolidOutput& output, const openvdb::FloatGrid::Ptr& grid,
                    DensityMetadata& metadata) {
-    if (output.write.half) {
+    if (output.write.half && output.memoryLimit == 0) {
         // What is stated has to hold for what is in the file.
         metadata.storageError = std::max(metadata.storageError, roundToHalf(*grid));
         metadata.gridVolume = densityIntegral(*grid);

@@ -11,6 +11,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -28,6 +29,7 @@ struct SolidOutput {
     IsoOption iso;
     int levels = 0;  ///< coarser ones beside the density
     VdbWriteOptions write;
+    std::int64_t memoryLimit = 0;  ///< bytes; a density that keeps one is made as it is written
 
     /// The file; nothing for an array, which has its own.
     std::optional<AtomicFile> openFile() const;
@@ -42,7 +44,7 @@ SolidOutput readSolidOutput(const CommandLine& line, const std::string& noun);
 void readDensityOptions(const CommandLine& line, const SolidOutput& output,
                         DensityOptions& density);
 
-/// Rounds the density if that is asked for, finds its iso-value, and stores in the grid what is
+/// Rounds the density if that is asked for, and has not been done, finds its iso-value, and stores in the grid what is
 /// known of it.
 void finishDensity(CommandRun& run, const SolidOutput& output, const openvdb::FloatGrid::Ptr& grid,
                    DensityMetadata& metadata);

@@ -11,6 +11,9 @@ namespace bandvox {
 
 using DensityLeaf = openvdb::FloatTree::LeafNodeType;
 
+/// What a leaf node takes of memory, with the administration of the two pieces that it consists of.
+constexpr std::size_t kBytesOfLeaf = DensityLeaf::SIZE * sizeof(float) + 128;
+
 /// A cube of 8³ voxels that all have one whole value.
 struct ConstantBlock {
     openvdb::Coord origin;

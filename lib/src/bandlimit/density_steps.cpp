@@ -75,10 +75,9 @@ double chooseVoxelSize(const std::string& source, const openvdb::BBoxd& bounds,
 }
 
 double memoryOfGrid(double leaves) {
-    constexpr double kBytesPerLeaf = 2048 + 128;
     constexpr double kBorderShare = 2;       // blocks at the columns' borders exist in pieces first
     constexpr double kNodesPerLeaf = 120.0;  // bytes of the nodes above, along a surface
-    return leaves * (kBytesPerLeaf * kBorderShare + kNodesPerLeaf);
+    return leaves * (kBytesOfLeaf * kBorderShare + kNodesPerLeaf);
 }
 
 double memoryOfColumns(const TileLayout& layout) {
@@ -95,17 +94,9 @@ void warnOfFilter(const ExponentialFilter& filter, double tolerance,
                        inShort(tolerance));
 }
 
-void finishGrid(std::vector<ColumnBlocks>& columns, const TileLayout& layout,
-                const DensityOptions& options, const TileGeometry& geometry, DensityResult& result,
-                Progress& progress) {
+void describeGrid(const DensityOptions& options, const TileGeometry& geometry, double integral,
+                  DensityResult& result) {
     DensityMetadata& metadata = result.metadata;
-    {
-        const ProgressStage stage(progress, "assembling", 0);
-        result.grid = assembleGrid(
-            columns, layout,
-            {geometry.threshold, metadata.clamped, /*isPart=*/!options.shard.isWhole()});
-    }
-    progress.throwIfInterrupted();
     if (result.grid->tree().empty() && options.shard.isWhole()) {
         throw Error(ErrorKind::Result, metadata.source + ": no voxel's density exceeds " +
                                            inShort(geometry.threshold) +
@@ -120,11 +111,24 @@ void finishGrid(std::vector<ColumnBlocks>& columns, const TileLayout& layout,
     metadata.cutoff = options.filter.cutoff;
     metadata.iso = options.iso;
     metadata.tolerance = options.tolerance;
-    metadata.gridVolume = densityIntegral(*result.grid);
+    metadata.gridVolume = integral;
     setDensityMetadata(*result.grid, metadata);
     setShardMetadata(*result.grid, {options.shard, result.overlaps, result.refinements});
     result.tileSide = geometry.side;
     result.halo = geometry.halo;
+}
+
+void finishGrid(std::vector<ColumnBlocks>& columns, const TileLayout& layout,
+                const DensityOptions& options, const TileGeometry& geometry, DensityResult& result,
+                Progress& progress) {
+    {
+        const ProgressStage stage(progress, "assembling", 0);
+        result.grid = assembleGrid(
+            columns, layout,
+            {geometry.threshold, result.metadata.clamped, /*isPart=*/!options.shard.isWhole()});
+    }
+    progress.throwIfInterrupted();
+    describeGrid(options, geometry, densityIntegral(*result.grid), result);
 }
 
 }  // namespace bandvox

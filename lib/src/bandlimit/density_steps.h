@@ -32,6 +32,12 @@ double memoryOfColumns(const TileLayout& layout);
 void warnOfFilter(const ExponentialFilter& filter, double tolerance,
                   std::vector<std::string>& warnings);
 
+/// Completes the metadata of the result's grid, of which source, route, errors, source volume and
+/// clamped are set already. `integral`: of the grid, as densityIntegral has it. Throws
+/// Error(ErrorKind::Result) if the grid is empty.
+void describeGrid(const DensityOptions& options, const TileGeometry& geometry, double integral,
+                  DensityResult& result);
+
 /// Joins the columns to the result's grid and completes its metadata, of which source, route,
 /// errors, source volume and clamped are set already. Throws Error(ErrorKind::Result) if the grid
 /// would be empty.

@@ -14,9 +14,13 @@ int floorDivide(int a, int b) {
 
 }  // namespace
 
-FarTiles::FarTiles(std::vector<ColumnBlocks>& columns, const TileLayout& layout) : mLayout(layout) {
-    mColumns.reserve(columns.size());
-    for (ColumnBlocks& column : columns) mColumns.push_back(std::move(column.farValues));
+FarTiles::FarTiles(const TileLayout& layout)
+    : mLayout(layout), mColumns(static_cast<std::size_t>(layout.count.y()) * layout.count.z()) {}
+
+void FarTiles::take(std::int64_t begin, std::vector<ColumnBlocks>& columns) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        mColumns[static_cast<std::size_t>(begin) + i] = std::move(columns[i].farValues);
+    }
 }
 
 openvdb::CoordBBox FarTiles::voxels() const {

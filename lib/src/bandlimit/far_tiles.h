@@ -3,6 +3,7 @@
 #include "bandlimit/block_store.h"
 #include "bandlimit/tile_plan.h"
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -12,8 +13,11 @@ namespace bandvox {
 /// kept as that, so that memory follows the surface.
 class FarTiles {
   public:
-    /// Takes the far values out of the columns, which are in the order of the layout's (y, z).
-    FarTiles(std::vector<ColumnBlocks>& columns, const TileLayout& layout);
+    explicit FarTiles(const TileLayout& layout);
+
+    /// Takes the far values out of columns, which are in the order of the layout's (y, z), the
+    /// first of them number `begin`. Of those that have not been given, all tiles are 0.
+    void take(std::int64_t begin, std::vector<ColumnBlocks>& columns);
 
     /// The one value of all voxels of `box`, if it lies in far tiles of one value only; voxels
     /// outside of the layout are 0.

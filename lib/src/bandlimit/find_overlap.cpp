@@ -1,10 +1,10 @@
 #include "bandlimit/find_overlap.h"
 
 #include "bandlimit/element_bins.h"
-#include "bandlimit/fill_columns.h"
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 namespace bandvox {
 
@@ -31,7 +31,7 @@ TileRange columnsOver(const TileLayout& layout, int axis, const TileLayout& othe
 // Filters once more what is beyond the limit.
 bool isBeyondWithoutRinging(const BoundarySource& source, const TileLayout& layout,
                             const std::vector<ColumnStatistics>& statistics, double limit,
-                            Progress& progress) {
+                            double memory, Progress& progress) {
     DensityOptions options;
     options.filter = kNeverRings;
     options.tolerance = kTolerance;
@@ -52,8 +52,11 @@ bool isBeyondWithoutRinging(const BoundarySource& source, const TileLayout& layo
         }
     }
     const TileFilter filter(plan);
-    const ColumnStatistics total =
-        fillColumns(source, plan, again, filter, "looking for overlaps", progress, wanted).total();
+    const ProgressStage stage(progress, "looking for overlaps",
+                              ColumnFiller::steps(source, plan, again));
+    ColumnFiller filler(source, plan, again, filter, std::move(wanted));
+    ColumnStatistics total;
+    while (!filler.isDone()) total.add(filler.fillNext(memory, progress).total());
     return isBeyond(total, kMargin * kTolerance);
 }
 
@@ -61,7 +64,7 @@ bool isBeyondWithoutRinging(const BoundarySource& source, const TileLayout& layo
 
 bool findOverlap(const BoundarySource& source, const DensityOptions& options,
                  const TileLayout& layout, const std::vector<ColumnStatistics>& statistics,
-                 Progress& progress) {
+                 Progress& progress, double memory) {
     ColumnStatistics total;
     for (const ColumnStatistics& column : statistics) total.add(column);
     if (total.highestWinding > 1 || total.lowestWinding < 0) return true;
@@ -69,7 +72,7 @@ bool findOverlap(const BoundarySource& source, const DensityOptions& options,
     if (options.filter.order <= 2) return isBeyond(total, exact);
     const double limit = std::max(exact, kBeyondRinging * filterOvershoot(options.filter));
     return isBeyond(total, limit) &&
-           isBeyondWithoutRinging(source, layout, statistics, limit, progress);
+           isBeyondWithoutRinging(source, layout, statistics, limit, memory, progress);
 }
 
 }  // namespace bandvox

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bandlimit/density_column.h"
+#include "bandlimit/fill_columns.h"
 #include "bandlimit/tile_plan.h"
 
 #include <bandvox/bandlimit/density.h>
@@ -17,9 +18,10 @@ namespace bandvox {
 /// than at a flat face, the surface is filtered once more, with one that never rings.
 ///
 /// `statistics` are those of the columns of `layout`. What lifts the density by less than ringing
-/// does, or by less than a hundredth, is let through. Throws Error(ErrorKind::Interrupted).
+/// does, or by less than a hundredth, is let through. `memory`: bytes that the second look may
+/// take, as ColumnFiller has it. Throws Error(ErrorKind::Interrupted).
 bool findOverlap(const BoundarySource& source, const DensityOptions& options,
                  const TileLayout& layout, const std::vector<ColumnStatistics>& statistics,
-                 Progress& progress);
+                 Progress& progress, double memory = ColumnFiller::kUnlimited);
 
 }  // namespace bandvox

@@ -204,7 +204,7 @@ std::int64_t SpreadBricks::steps(const TilePlan& plan, const TileLayout& layout)
 
 SpreadBricks::SpreadBricks(const BoundarySource& source, const TilePlan& plan,
                            const TileLayout& layout, const TileFilter& filter,
-                           const std::vector<bool>& wanted, Progress& progress)
+                           const std::vector<bool>& wanted)
     : mSource(source),
       mPlan(plan),
       mLayout(layout),
@@ -213,25 +213,68 @@ SpreadBricks::SpreadBricks(const BoundarySource& source, const TilePlan& plan,
     for (int axis = 0; axis < 3; ++axis) {
         mAxes[axis] = Axis(layout.count[axis], layout.interior, plan.side);
     }
-    const Bins bins = binElements(bricksOf(wanted));
-    mColumns.resize(bins.start.size() - 1);
-    std::vector<double> seconds(mColumns.size(), 0);
+    mBins = binElements(bricksOf(wanted));
+    mColumns.resize(mBins.start.size() - 1);
+}
+
+SpreadBricks::SpreadBricks(const BoundarySource& source, const TilePlan& plan,
+                           const TileLayout& layout, const TileFilter& filter,
+                           const std::vector<bool>& wanted, Progress& progress)
+    : SpreadBricks(source, plan, layout, filter, wanted) {
+    spread({0, layout.count.y() - 1}, progress);
+}
+
+void SpreadBricks::spread(const TileRange& rows, Progress& progress) {
+    const int begin = std::max(mEnd, mAxes[1].first(rows.first));
+    const int end = std::max(begin, mAxes[1].last(rows.last) + 1);
+    const int zCount = mAxes[2].count();
+    std::vector<double> seconds(static_cast<std::size_t>(end - begin) * zCount, 0);
     WorkerPool<Filler> pool([&] { return std::make_unique<Filler>(*this); });
-    parallelFor(static_cast<std::int64_t>(mColumns.size()), [&](std::int64_t i) {
+    parallelFor(static_cast<std::int64_t>(seconds.size()), [&](std::int64_t i) {
         progress.throwIfInterrupted();
-        const auto elements = bins.bin(static_cast<std::size_t>(i));
+        const int y = begin + static_cast<int>(i / zCount);
+        const int z = static_cast<int>(i % zCount);
+        const std::size_t column = static_cast<std::size_t>(y) * zCount + z;
+        const auto elements = mBins.bin(column);
         if (!elements.empty()) {
             const Stopwatch stopwatch;
             std::unique_ptr<Filler> filler = pool.take();
-            const int zCount = mAxes[2].count();
-            mColumns[i] =
-                filler->fill(static_cast<int>(i / zCount), static_cast<int>(i % zCount), elements);
+            mColumns[column] = filler->fill(y, z, elements);
             pool.giveBack(std::move(filler));
             seconds[i] = stopwatch.seconds();
         }
         progress.advance();
     });
     for (const double part : seconds) mSeconds += part;
+    for (int y = begin; y < end; ++y) mMemory += memoryOf(y);
+    mEnd = end;
+    if (mEnd == mAxes[1].count()) mBins = {};
+}
+
+void SpreadBricks::dropBefore(int row) {
+    if (row >= mLayout.count.y()) return;
+    const int end = std::min(mAxes[1].first(row), mEnd);
+    for (; mFirst < end; ++mFirst) {
+        mMemory -= memoryOf(mFirst);
+        for (int z = 0; z < mAxes[2].count(); ++z) {
+            Column().swap(mColumns[static_cast<std::size_t>(mFirst) * mAxes[2].count() + z]);
+        }
+    }
+}
+
+std::size_t SpreadBricks::Brick::memory() const {
+    return sizeof(Brick) + rows.capacity() * sizeof(Row) + values.capacity() * sizeof(float) +
+           voxels.capacity() * sizeof(voxels[0]);
+}
+
+std::size_t SpreadBricks::memoryOf(int y) const {
+    std::size_t bytes = 0;
+    for (int z = 0; z < mAxes[2].count(); ++z) {
+        for (const Brick& brick : mColumns[static_cast<std::size_t>(y) * mAxes[2].count() + z]) {
+            bytes += brick.memory();
+        }
+    }
+    return bytes;
 }
 
 // Which columns of bricks matter to columns of tiles; empty for all.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bandlimit/element_bins.h"
 #include "bandlimit/near_cells.h"
 #include "bandlimit/parallel_bins.h"
 #include "bandlimit/tile_filter.h"
@@ -35,10 +36,23 @@ class SpreadBricks {
     /// The steps by which making them advances progress.
     static std::int64_t steps(const TilePlan& plan, const TileLayout& layout);
 
-    /// Spreads what matters to columns of tiles that are `wanted`, as fillColumns has them.
-    /// Throws Error(ErrorKind::Interrupted).
+    /// For columns of tiles that are `wanted`, as fillColumns has them. Spreads nothing yet.
+    SpreadBricks(const BoundarySource& source, const TilePlan& plan, const TileLayout& layout,
+                 const TileFilter& filter, const std::vector<bool>& wanted);
+
+    /// Spreads what matters to all of them. Throws Error(ErrorKind::Interrupted).
     SpreadBricks(const BoundarySource& source, const TilePlan& plan, const TileLayout& layout,
                  const TileFilter& filter, const std::vector<bool>& wanted, Progress& progress);
+
+    /// Spreads what matters to tiles in some rows along y, unless that has been done. Throws
+    /// Error(ErrorKind::Interrupted).
+    void spread(const TileRange& rows, Progress& progress);
+
+    /// Gives back what matters to no tile in row `row` or behind.
+    void dropBefore(int row);
+
+    /// Bytes that the bricks take.
+    std::size_t memory() const { return mMemory; }
 
     /// What is in a tile's region.
     struct Content {
@@ -73,6 +87,7 @@ class SpreadBricks {
         std::vector<Row> rows;
         std::vector<float> values;
         std::vector<std::uint16_t> voxels;  // that hold samples: x·32² + y·32 + z
+        std::size_t memory() const;
     };
     using Column = std::vector<Brick>;  // from low x to high
 
@@ -92,6 +107,7 @@ class SpreadBricks {
     class Filler;
 
     Bins binElements(const std::vector<bool>& wantedBricks) const;
+    std::size_t memoryOf(int y) const;
     std::vector<bool> bricksOf(const std::vector<bool>& wantedTiles) const;
     template <typename Visit>
     void forEachBrick(const openvdb::Coord& tile, const Visit& visit) const;
@@ -102,7 +118,10 @@ class SpreadBricks {
     const TileFilter& mFilter;
     openvdb::Vec3d mOrigin;  // of the first tile's region, voxels
     std::array<Axis, 3> mAxes;
+    Bins mBins;                    // the elements of each column of bricks
     std::vector<Column> mColumns;  // y·(bricks along z) + z
+    int mFirst = 0, mEnd = 0;      // along y, of the columns that are there
+    std::size_t mMemory = 0;
     double mSeconds = 0;
 };
 

@@ -54,6 +54,13 @@ std::int64_t availableMemory() {
     return std::min({availableInSystem(), availableInControlGroups(), availableInAddressSpace()});
 }
 
+std::int64_t residentMemory() {
+    std::ifstream file("/proc/self/statm");
+    std::int64_t pages = 0, resident = 0;
+    file >> pages >> resident;
+    return resident * sysconf(_SC_PAGESIZE);
+}
+
 std::int64_t peakMemory() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);

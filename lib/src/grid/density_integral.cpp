@@ -1,3 +1,5 @@
+#include "grid/leaf_sums.h"
+
 #include "core/instruction_sets.h"
 
 #include <bandvox/core/parallel.h>
@@ -13,13 +15,10 @@
 
 namespace bandvox {
 
-namespace {
-
-using Leaf = openvdb::FloatTree::LeafNodeType;
-
 // In several sums at once, of which none waits for another.
 BANDVOX_FOR_EACH_INSTRUCTION_SET
-double sumOfActive(const Leaf& leaf) {
+double sumOfActive(const openvdb::FloatTree::LeafNodeType& leaf) {
+    using Leaf = openvdb::FloatTree::LeafNodeType;
     constexpr openvdb::Index kSums = 16;
     using Word = openvdb::util::NodeMask<Leaf::LOG2DIM>::Word;
     constexpr openvdb::Index kBits = 8 * sizeof(Word);
@@ -36,11 +35,18 @@ double sumOfActive(const Leaf& leaf) {
     return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
-}  // namespace
+double integralOf(const openvdb::FloatGrid& grid, const std::vector<double>& sums) {
+    double sum = std::accumulate(sums.begin(), sums.end(), 0.0);
+    auto tile = grid.tree().cbeginValueOn();
+    tile.setMaxDepth(openvdb::FloatTree::ValueOnCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile) sum += static_cast<double>(*tile) * tile.getVoxelCount();
+    // A voxel's volume is the determinant of the map's linear part, which is negative of a mirror.
+    return sum * std::abs(grid.transform().voxelVolume());
+}
 
 double densityIntegral(const openvdb::FloatGrid& grid, Progress& progress) {
     // Sum each leaf by itself first, so that many small values are not lost beside a large sum.
-    std::vector<const Leaf*> leaves;
+    std::vector<const openvdb::FloatTree::LeafNodeType*> leaves;
     grid.tree().getNodes(leaves);
     std::vector<double> sums(leaves.size());
     constexpr std::size_t kLeavesPerTask = 1024;
@@ -53,12 +59,7 @@ double densityIntegral(const openvdb::FloatGrid& grid, Progress& progress) {
             sums[i] = sumOfActive(*leaves[i]);
         }
     });
-    double sum = std::accumulate(sums.begin(), sums.end(), 0.0);
-    auto tile = grid.tree().cbeginValueOn();
-    tile.setMaxDepth(openvdb::FloatTree::ValueOnCIter::LEAF_DEPTH - 1);
-    for (; tile; ++tile) sum += static_cast<double>(*tile) * tile.getVoxelCount();
-    // A voxel's volume is the determinant of the map's linear part, which is negative of a mirror.
-    return sum * std::abs(grid.transform().voxelVolume());
+    return integralOf(grid, sums);
 }
 
 }  // namespace bandvox

@@ -8,6 +8,9 @@ namespace bandvox {
 /// counts as available, or less where a control group limits it.
 std::int64_t availableMemory();
 
+/// The bytes of memory that this process holds now; 0 if that is not known.
+std::int64_t residentMemory();
+
 /// The most bytes of memory that this process has held so far.
 std::int64_t peakMemory();
 
