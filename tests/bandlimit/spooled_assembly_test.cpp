@@ -111,15 +111,15 @@ TEST_F(SpooledAssemblyTest, GivesTheFileOfTheWhole) {
     const ExponentialFilter soft{2, 0.16}, sharp{4, 0.25};
     std::vector<std::unique_ptr<Case>> cases;
     for (const char* shape : {"shape:sphere", "shape:torus", "shape:cube", "shape:two-balls"}) {
-        cases.push_back(std::make_unique<Case>(makeShapeBoundary(shape), sharp, 120, 48));
+        cases.push_back(std::make_unique<Case>(makeShapeBoundary(shape), sharp, 96, 48));
     }
-    cases.push_back(std::make_unique<Case>(makeShapeBoundary("shape:torus"), soft, 150));
+    cases.push_back(std::make_unique<Case>(makeShapeBoundary("shape:torus"), soft, 120));
     cases.push_back(std::make_unique<Case>(overlappingBalls(), sharp, 80, 40));
     for (const auto& each : cases) {
         const Case& one = *each;
         for (const bool clamp : {false, true}) {
             const auto whole = one.whole(clamp);
-            for (const double memory : {0.0, 4e6}) {
+            for (const double memory : {0.0, 1.5e6}) {
                 const auto made = one.spooled(clamp, false, memory, mFolder / "x.vdb")->finish(false);
                 EXPECT_EQ(bytesOf(made.grid, {}), bytesOf(whole, {}))
                     << one.source->name() << " " << clamp << " " << memory;
@@ -165,7 +165,8 @@ TEST_F(SpooledAssemblyTest, RoundsAsTheWholeIsRounded) {
     const double integral = densityIntegral(*exact);
     const double change = roundToHalf(*exact);
     const auto made = one.spooled(false, true, 0, mFolder / "x.vdb")->finish(false);
-    EXPECT_EQ(made.integral, integral);
+    // What was no tile before has been summed up in another order.
+    EXPECT_NEAR(made.integral, integral, 1e-12 * integral);
     EXPECT_EQ(made.storedIntegral, densityIntegral(*exact));
     EXPECT_EQ(made.storageError, change);
     EXPECT_GT(change, 0);

@@ -15,6 +15,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 
 namespace bandvox {
 namespace {
@@ -74,13 +75,15 @@ void expectSameGrid(const openvdb::FloatGrid& a, const openvdb::FloatGrid& b) {
 
 TEST_F(SurfaceToVdb, WritesWhatIsMadeWithoutALimit) {
     const ThreadLimit threads(2);
-    for (const char* shape : {"shape:torus", "shape:cube", "shape:two-balls"}) {
+    const std::pair<const char*, int> shapes[] = {
+        {"shape:torus", 256}, {"shape:cube", 180}, {"shape:two-balls", 360}};
+    for (const auto& [shape, resolution] : shapes) {
         const auto source = makeShapeBoundary(shape);
         DensityOptions options;
-        options.resolution = 320;
+        options.resolution = resolution;
         options.filter = {4, 0.25};
         const DensityResult whole = surfaceToDensity(*source, options);
-        const VdbTarget target{mFolder / "x.vdb", {}, limitOf(70 * kMegabyte)};
+        const VdbTarget target{mFolder / "x.vdb", {}, limitOf(48 * kMegabyte)};
         const DensityResult made = surfaceToVdb(*source, options, target);
         EXPECT_FALSE(isInMemory(made)) << shape;
         expectSame(whole, made);
@@ -96,7 +99,7 @@ TEST_F(SurfaceToVdb, LimitsShellsThatOverlap) {
     const MeshSource source("balls", balls);
     DensityOptions options;
     options.voxelSize = 1 / 1.6;
-    VdbTarget target{mFolder / "x.vdb", {}, limitOf(60 * kMegabyte)};
+    VdbTarget target{mFolder / "x.vdb", {}, limitOf(48 * kMegabyte)};
     target.write.half = true;
     const DensityResult made = surfaceToVdb(source, options, target);
     EXPECT_FALSE(isInMemory(made));

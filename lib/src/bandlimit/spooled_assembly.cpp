@@ -63,7 +63,7 @@ double SpooledAssembly::finalMemory() const {
 }
 
 double SpooledAssembly::leastFinalMemory(double leaves) {
-    constexpr double kSure = 0.5;  // of what is a little high for most surfaces
+    constexpr double kSure = 0.75;  // of what is a fifth too high for flat surfaces
     return kSure * kBytesOfFinalLeaf * leaves;
 }
 
@@ -126,7 +126,9 @@ void SpooledAssembly::round(LeafList& leaves, std::vector<double>& sums) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         if (isConstantLeaf(*leaves[i])) {
-            mConstant.push_back({leaves[i]->origin(), leaves[i]->buffer().data()[0]});
+            const float value = leaves[i]->buffer().data()[0];
+            mConstant.push_back({leaves[i]->origin(), value});
+            mLost += sums[i] - static_cast<double>(value) * DensityLeaf::SIZE;
             continue;
         }
         sums[kept] = sums[i];
@@ -234,9 +236,12 @@ SpooledAssembly::Grid SpooledAssembly::finish(bool limit) {
         for (const DensityLeaf* leaf : leaves) ordered.push_back(ofNumber[leaf->transientData()]);
         return integralOf(*grid, ordered);
     };
-    Grid result{grid, integrate(sums), 0, mChange};
-    result.storedIntegral = mRounds ? integrate(storedSums) : result.integral;
-    return result;
+    if (!mRounds) {
+        const double integral = integrate(sums);
+        return {grid, integral, integral, 0};
+    }
+    const double lost = mLost * grid->transform().voxelVolume();
+    return {grid, integrate(storedSums), integrate(sums) + lost, mChange};
 }
 
 }  // namespace bandvox

@@ -44,8 +44,8 @@ class SpooledAssembly {
     /// A grid as assembleGrid makes it, whose values are elsewhere, and what is known of these.
     struct Grid {
         openvdb::FloatGrid::Ptr grid;
-        double integral = 0;        ///< as densityIntegral has it, before values were rounded
-        double storedIntegral = 0;  ///< the same after it
+        double storedIntegral = 0;  ///< as densityIntegral has it
+        double integral = 0;        ///< the same before values were rounded
         double storageError = 0;    ///< largest change by rounding
     };
 
@@ -94,6 +94,7 @@ class SpooledAssembly {
     std::shared_ptr<LeafSpool> mSpool;
     // Largest change by rounding, of all values and of those in [0, 1].
     double mChange = 0, mChangeInside = 0;
+    double mLost = 0;  // of the sum of all values, where rounding has made tiles
 };
 
 }  // namespace bandvox
