@@ -2,7 +2,6 @@
 
 #include "convert_settings.h"
 #include "convert_to_array.h"
-#include "words.h"
 
 #include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>
@@ -19,14 +18,23 @@ constexpr std::int64_t kLeast = std::int64_t(1) << 20;
                 "--memory-limit is not for " + what + ": that needs the whole grid in memory");
 }
 
+std::string inMebibytes(std::int64_t bytes) {
+    constexpr std::int64_t kMebibyte = std::int64_t(1) << 20;
+    return std::to_string((bytes + kMebibyte - 1) / kMebibyte) + " MiB";
+}
+
 }  // namespace
 
 OptionEntry memoryLimitEntry() {
-    return {"memory-limit", 0, "SIZE", "",
-            "Of a solid that becomes a density: hold no more than so much memory at a time, as 800M "
-            "or 2G, with binary units. What does not fit lies on the disk meanwhile, beside the "
-            "output, which is the same.",
-            "Output"};
+    return {
+        "memory-limit",
+        0,
+        "SIZE",
+        "",
+        "Of a solid that becomes a density: hold no more than so much memory at a time, as 800M "
+        "or 2G, with binary units. What does not fit lies on the disk meanwhile, beside the "
+        "output, which is the same.",
+        "Output"};
 }
 
 std::int64_t readMemoryLimit(const CommandLine& line) {
@@ -41,7 +49,8 @@ std::int64_t readMemoryLimit(const CommandLine& line) {
     for (const char* option : {"lod", "color", "shard", "band"}) {
         if (line.has(option)) refuse(std::string("--") + option);
     }
-    if (line.textOrDefault("as").value_or("density") != "density") refuse("--as " + *line.textOrDefault("as"));
+    if (line.textOrDefault("as").value_or("density") != "density")
+        refuse("--as " + *line.textOrDefault("as"));
     if (line.textOrDefault("iso") == "volume") refuse("--iso volume");
     const std::string route = line.textOrDefault("route").value_or("auto");
     if (route == "sampled" || route == "winding") refuse("--route " + route);
@@ -51,9 +60,9 @@ std::int64_t readMemoryLimit(const CommandLine& line) {
 void requireReadWithin(std::int64_t limit, std::int64_t before) {
     const std::int64_t peak = peakMemory();
     if (limit == 0 || peak <= limit || peak <= before) return;
-    throw Error(ErrorKind::Memory, "to read the input took " + formatBytes(peak) +
-                                       " of memory, more than the --memory-limit of " +
-                                       formatBytes(limit) + "; expected a higher one");
+    throw Error(ErrorKind::Memory, "to read the input took " + inMebibytes(peak) +
+                                       " of memory, more than the limit of " + inMebibytes(limit) +
+                                       "; expected a higher --memory-limit");
 }
 
 }  // namespace bandvox::app

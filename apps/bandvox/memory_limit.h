@@ -10,8 +10,8 @@ namespace bandvox::app {
 /// The option --memory-limit.
 OptionEntry memoryLimitEntry();
 
-/// What it asks for, bytes; 0 without it. Throws Error(ErrorKind::Usage) for conversions, outputs and
-/// options that need the whole grid in memory.
+/// What it asks for, bytes; 0 without it. Throws Error(ErrorKind::Usage) for conversions, outputs
+/// and options that need the whole grid in memory.
 std::int64_t readMemoryLimit(const CommandLine& line);
 
 /// Throws Error(ErrorKind::Memory) if the process has held more than `limit` while it read the

@@ -30,8 +30,8 @@ struct SolidDensityRequest {
     int samplesPerSide = FieldDensityOptions().oversample;  ///< of the sampled route
     int rowsPerVoxel = SoupDensityOptions().rowsPerVoxel;   ///< of that of the winding number
     std::optional<double> samplingTolerance;                ///< if it was asked for
-    VdbTarget target;              ///< of a limit of memory; without one there is none
-    std::int64_t peakBefore = 0;   ///< bytes that the process had held before the input was read
+    VdbTarget target;             ///< of a limit of memory; without one there is none
+    std::int64_t peakBefore = 0;  ///< bytes that the process had held before the input was read
 };
 
 /// Makes a density of a mesh that was read from the input; says what was found and done.

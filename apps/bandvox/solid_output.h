@@ -44,8 +44,8 @@ SolidOutput readSolidOutput(const CommandLine& line, const std::string& noun);
 void readDensityOptions(const CommandLine& line, const SolidOutput& output,
                         DensityOptions& density);
 
-/// Rounds the density if that is asked for, and has not been done, finds its iso-value, and stores in the grid what is
-/// known of it.
+/// Rounds the density if that is asked for, and has not been done, finds its iso-value, and stores
+/// in the grid what is known of it.
 void finishDensity(CommandRun& run, const SolidOutput& output, const openvdb::FloatGrid::Ptr& grid,
                    DensityMetadata& metadata);
 

@@ -173,6 +173,15 @@ TEST_F(AnyMesh, ManyPiecesAreNoTrouble) {
     EXPECT_NEAR(metadata.gridVolume, 10000.0 / 6, 1e-3 * 10000 / 6);
 }
 
+TEST_F(AnyMesh, WhatGoesByItsWindingNumberIsNotForALimitOfMemory) {
+    write("a.obj", test::panels(0.01));
+    const Names limited{"convert", "a.obj", "-o", "a.vdb", "-r", "32", "--memory-limit", "1G"};
+    const RunResult result = run(limited);
+    EXPECT_EQ(result.status, 2);
+    EXPECT_NE(result.err.find("some goes by its winding number"), std::string::npos) << result.err;
+    EXPECT_EQ(mFolder.contents(), Names{"a.obj"});
+}
+
 TEST_F(AnyMesh, WhatNoCapsCloseGoesByItsWindingNumber) {
     const DensityMetadata box = converted(test::panels(0.01));
     EXPECT_EQ(box.route, "winding");

@@ -120,7 +120,8 @@ TEST_F(SpooledAssemblyTest, GivesTheFileOfTheWhole) {
         for (const bool clamp : {false, true}) {
             const auto whole = one.whole(clamp);
             for (const double memory : {0.0, 1.5e6}) {
-                const auto made = one.spooled(clamp, false, memory, mFolder / "x.vdb")->finish(false);
+                const auto made =
+                    one.spooled(clamp, false, memory, mFolder / "x.vdb")->finish(false);
                 EXPECT_EQ(bytesOf(made.grid, {}), bytesOf(whole, {}))
                     << one.source->name() << " " << clamp << " " << memory;
                 EXPECT_EQ(made.integral, densityIntegral(*whole));
@@ -143,7 +144,8 @@ TEST_F(SpooledAssemblyTest, HasTheBricksOfOneRowAfterTheOther) {
 
 // Whether shells overlap is known only when all columns are filled.
 TEST_F(SpooledAssemblyTest, CanBeLimitedInTheEnd) {
-    for (const ExponentialFilter& filter : {ExponentialFilter{2, 0.16}, ExponentialFilter{4, 0.28}}) {
+    for (const ExponentialFilter& filter :
+         {ExponentialFilter{2, 0.16}, ExponentialFilter{4, 0.28}}) {
         const Case one(overlappingBalls(), filter, 80, 40);
         for (const bool rounds : {false, true}) {
             const auto whole = one.whole(/*clamp=*/true);

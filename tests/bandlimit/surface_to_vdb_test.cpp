@@ -1,6 +1,5 @@
-#include "source/test_meshes.h"
-
 #include "bandlimit/closed_form_density.h"
+#include "source/test_meshes.h"
 
 #include <bandvox/bandlimit/surface_to_density.h>
 #include <bandvox/bandlimit/surface_to_vdb.h>
@@ -149,7 +148,6 @@ TEST_F(SurfaceToVdb, RefusesAPart) {
     EXPECT_THROW(surfaceToVdb(*source, options, {mFolder / "x.vdb", {}, 0}), Error);
     EXPECT_TRUE(fs::is_empty(mFolder));
 }
-
 
 }  // namespace
 }  // namespace bandvox

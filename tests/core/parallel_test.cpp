@@ -59,6 +59,11 @@ TEST(Memory, NumbersMakeSense) {
     EXPECT_GT(before, 1 << 20);
     std::vector<char> block(64 << 20, 1);
     EXPECT_GT(peakMemory() + block[12345], before + (32 << 20));
+    const std::int64_t held = residentMemory();
+    EXPECT_GT(held, 32 << 20);
+    EXPECT_LE(held, peakMemory() + (1 << 20));
+    std::vector<char>().swap(block);
+    EXPECT_LT(residentMemory(), held - (32 << 20));
 }
 
 TEST(Memory, MoreThanThereIsIsRefusedWithBothNumbers) {

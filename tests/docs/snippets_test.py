@@ -19,7 +19,7 @@ PAGES = {
     "README.md": (
         ["bunny.obj", "painted.obj", "head.nrrd", "scan", "dicom", "particles.csv", "scan.ply", "heights.csv",
          "terrain.csv", "examples", "old_sdf.vdb"],
-        "bunny.vdb bunny.png sharp.vdb sampled.vdb bunny.json piped.png blended.vdb painted.vdb small.vdb levels.vdb "
+        "bunny.vdb bunny.png large.vdb sharp.vdb sampled.vdb bunny.json piped.png blended.vdb painted.vdb small.vdb levels.vdb "
         "scan.vdb half.vdb water.vdb statue.vdb surface.bpt terrain.vdb teapot.svg bunny.svg bone.vdb bone.stl density.vdb "
         "distances.vdb small.nrrd bunny.ply painted.glb wide.png bunny.exr soft.png glass.png fog.png around.03.png "
         "voxels.png shares.vdb mask.vdb both.vdb bunny.html sim.0002.vdb again.vdb torus.vdb torus.png"),
@@ -29,7 +29,7 @@ PAGES = {
          "body.vdb", "hat.vdb", "block.vdb", "drill.vdb"], "both.vdb part.vdb between.vdb all.vdb"),
     "docs/farm.md": (
         ["sim.0001.obj", "sim.0002.obj", "sim.0003.obj"],
-        "vol.0003.vdb surface.0003.ply coarse.01.vdb coarse.03.vdb whole.vdb third.vdb shot.vdb fine.vdb"),
+        "vol.0003.vdb surface.0003.ply coarse.01.vdb coarse.03.vdb whole.vdb third.vdb large.vdb shot.vdb fine.vdb"),
     "docs/fit.md": ([], "surface.bpt surface.npy surface.ply surface.exr solid.vdb simple.bpt bent.npy field.vdb flow.vdb"),
     "docs/gallery.md": (
         ["scenes", "stanford-bunny.obj", "teapot.obj", "spot.obj"],

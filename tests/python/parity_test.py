@@ -42,6 +42,7 @@ CONVERT = {
     "clamp": ("bandlimit.clamp",),
     "iso": ("bandlimit.iso", "to_mesh.iso", "to_level_set.iso", "to_fog.iso"),
     "color": ("colors.source", "to_mesh.colors"),
+    "memory-limit": "a grid is returned in memory; one that does not fit is the command's, or surfaceToVdb's of C++",
     "shard": ("bandlimit.shard", "bandlimit_points.shard", "bandlimit_grid.shard"),
     "half": ("Grid.write.half", "write_vdb.half"),
     "compression": ("Grid.write.compression", "write_vdb.compression", "write_array.compression"),

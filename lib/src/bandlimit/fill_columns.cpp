@@ -88,8 +88,7 @@ void ColumnFiller::prepareBricks(double memory, FilledColumns& columns, Progress
             const auto held = static_cast<double>(mBricks->memory());
             mBricks->spread({mRowsEnd, mRowsEnd}, progress);
             ++mRowsEnd;
-            mRowOfBricks =
-                std::max(mRowOfBricks, static_cast<double>(mBricks->memory()) - held);
+            mRowOfBricks = std::max(mRowOfBricks, static_cast<double>(mBricks->memory()) - held);
         } while (mRowsEnd < mLayout.count.y() &&
                  static_cast<double>(mBricks->memory()) + mRowOfBricks < kShareOfBricks * memory);
     }
@@ -109,8 +108,8 @@ FilledColumns ColumnFiller::fillNext(double memory, Progress& progress) {
     const std::int64_t begin = mNext;
     columns.blocks.resize(end - begin);
     columns.statistics.resize(end - begin);
-    const std::int64_t tasks = static_cast<std::int64_t>(
-        std::clamp<double>(memory / mLargestColumn, 1, threadCount()));
+    const std::int64_t tasks =
+        static_cast<std::int64_t>(std::clamp<double>(memory / mLargestColumn, 1, threadCount()));
     std::atomic<std::int64_t> next{begin};
     std::atomic<double> held{0}, largest{mLargestColumn};
     std::atomic<bool> hasFailed{false};

@@ -75,9 +75,9 @@ class ColumnFiller {
     // What the source gives to tiles: bricks for all columns of some rows, or bins.
     std::optional<SpreadBricks> mBricks;
     std::optional<ElementBins> mBins;
-    int mRowsEnd = 0;            // of the rows that there are bricks for
-    double mRowOfBricks = 0;     // largest seen, bytes
-    double mLargestColumn;       // the same, of its blocks
+    int mRowsEnd = 0;         // of the rows that there are bricks for
+    double mRowOfBricks = 0;  // largest seen, bytes
+    double mLargestColumn;    // the same, of its blocks
     WorkerPool<DensityColumn> mPool;
 };
 

@@ -77,9 +77,9 @@ bool SpooledAssembly::isComplete(const openvdb::Coord& block) const {
 }
 
 LeafList SpooledAssembly::takeComplete() {
-    const auto border =
-        std::partition(mPending.begin(), mPending.end(),
-                       [&](const auto& leaf) { return !isComplete(leaf->origin()); });
+    const auto border = std::partition(mPending.begin(), mPending.end(), [&](const auto& leaf) {
+        return !isComplete(leaf->origin());
+    });
     LeafList complete(std::make_move_iterator(border), std::make_move_iterator(mPending.end()));
     mPending.erase(border, mPending.end());
     return complete;
@@ -148,7 +148,8 @@ void SpooledAssembly::keep(LeafList leaves) {
     if (mRounds) round(leaves, sums);
     const std::size_t first = mKept.size();
     if (first + leaves.size() > std::numeric_limits<std::uint32_t>::max()) {
-        throw Error(ErrorKind::Memory, "the grid has more than 2^32 leaf nodes; take larger voxels");
+        throw Error(ErrorKind::Memory,
+                    "the grid has more than 2^32 leaf nodes; take larger voxels");
     }
     mKept.resize(first + leaves.size());
     forEachChunkOfLeaves(leaves.size(), [&](std::size_t begin, std::size_t end) {

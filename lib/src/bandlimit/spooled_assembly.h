@@ -37,8 +37,8 @@ class SpooledAssembly {
     double memory() const;
     double finalMemory() const;
 
-    /// What finalMemory() comes to, at the least, for a grid that was estimated to have so many leaf
-    /// nodes.
+    /// What finalMemory() comes to, at the least, for a grid that was estimated to have so many
+    /// leaf nodes.
     static double leastFinalMemory(double leaves);
 
     /// A grid as assembleGrid makes it, whose values are elsewhere, and what is known of these.

@@ -51,10 +51,11 @@ class MemoryBudget {
     /// Throws Error(ErrorKind::Memory) unless there is room for `bytes` beside what is held.
     void require(double bytes) const {
         if (bytes <= left(0)) return;
-        throw Error(ErrorKind::Memory,
-                    mRoute.wanted() + " needs about " + inMebibytes(mLimit + kOverhead * (bytes - left(0))) +
-                        " of memory, more than the limit of " + inMebibytes(mLimit) +
-                        "; raise it, or take larger voxels or fewer threads");
+        throw Error(ErrorKind::Memory, mRoute.wanted() + " needs about " +
+                                           inMebibytes(mLimit + kOverhead * (bytes - left(0))) +
+                                           " of memory, more than the limit of " +
+                                           inMebibytes(mLimit) +
+                                           "; raise it, or take larger voxels or fewer threads");
     }
 
   private:
@@ -143,8 +144,9 @@ void roundGrid(DensityResult& result, Progress& progress) {
 DensityResult surfaceToSpooledDensity(const BoundarySource& source, const DensityOptions& options,
                                       const VdbTarget& target, Progress& progress) {
     if (!options.shard.isWhole()) {
-        throw Error(ErrorKind::Usage, "a part of a grid is made without a limit of memory; take "
-                                      "more parts if one does not fit");
+        throw Error(ErrorKind::Usage,
+                    "a part of a grid is made without a limit of memory; take "
+                    "more parts if one does not fit");
     }
     if (target.memoryLimit <= 0) {
         DensityResult result = surfaceToDensity(source, options, progress);
@@ -166,9 +168,9 @@ DensityResult surfaceToSpooledDensity(const BoundarySource& source, const Densit
         fillToToleranceInParts(route, filter, target, budget, result.refinements, progress);
     const ColumnStatistics statistics = filled.measured.total();
     budget.measure();
-    result.overlaps = !options.sumOverlaps &&
-                      findOverlap(source, options, route.layout, filled.measured.statistics,
-                                  progress, budget.left(0));
+    result.overlaps =
+        !options.sumOverlaps && findOverlap(source, options, route.layout,
+                                            filled.measured.statistics, progress, budget.left(0));
 
     // Join the columns to one grid.
     stateMeasured(route, statistics, result);

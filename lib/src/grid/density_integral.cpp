@@ -1,6 +1,5 @@
-#include "grid/leaf_sums.h"
-
 #include "core/instruction_sets.h"
+#include "grid/leaf_sums.h"
 
 #include <bandvox/core/parallel.h>
 #include <bandvox/grid/density_grid.h>

@@ -82,8 +82,8 @@ void LeafSpool::read(std::uint32_t number, Leaf& leaf) const {
     char* to = reinterpret_cast<char*>(leaf.buffer().data());
     const off_t begin = static_cast<off_t>(number) * static_cast<off_t>(kBytes);
     for (std::size_t done = 0; done < kBytes;) {
-        const ssize_t count = ::pread(mDescriptor, to + done, kBytes - done,
-                                      begin + static_cast<off_t>(done));
+        const ssize_t count =
+            ::pread(mDescriptor, to + done, kBytes - done, begin + static_cast<off_t>(done));
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) fail(std::strerror(errno));
         if (count == 0) fail("it was cut short");

@@ -24,11 +24,11 @@ struct VdbTarget {
 /// whatever the limit, and so is the file that writeVdb makes of it.
 ///
 /// Of the result's grid the tree's nodes, tiles, active states and metadata are in memory. Unless
-/// all fitted, the values of its leaf nodes are not: they read as 0, and are not to be changed. What
-/// it is for is writeVdb. Metadata of it and of its copies may be changed.
-/// Throws as surfaceToDensity; Error(ErrorKind::Memory) also if the limit is too low, before the
-/// work as far as that can be told, Error(ErrorKind::Usage) for a part of the grid
-/// (DensityOptions::shard), Error(ErrorKind::Runtime) if there is no room on the disk.
+/// all fitted, the values of its leaf nodes are not: they read as 0, and are not to be changed.
+/// What it is for is writeVdb. Metadata of it and of its copies may be changed. Throws as
+/// surfaceToDensity; Error(ErrorKind::Memory) also if the limit is too low, before the work as far
+/// as that can be told, Error(ErrorKind::Usage) for a part of the grid (DensityOptions::shard),
+/// Error(ErrorKind::Runtime) if there is no room on the disk.
 DensityResult surfaceToSpooledDensity(const BoundarySource& source, const DensityOptions& options,
                                       const VdbTarget& target,
                                       Progress& progress = silentProgress());
