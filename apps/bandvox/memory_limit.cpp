@@ -60,9 +60,9 @@ std::int64_t readMemoryLimit(const CommandLine& line) {
 void requireReadWithin(std::int64_t limit, std::int64_t before) {
     const std::int64_t peak = peakMemory();
     if (limit == 0 || peak <= limit || peak <= before) return;
-    throw Error(ErrorKind::Memory, "to read the input took " + inMebibytes(peak) +
-                                       " of memory, more than the limit of " + inMebibytes(limit) +
-                                       "; expected a higher --memory-limit");
+    throw Error(ErrorKind::Memory, "to read the input and make it a solid took " +
+                                       inMebibytes(peak) + " of memory, more than the limit of " +
+                                       inMebibytes(limit) + "; expected a higher --memory-limit");
 }
 
 }  // namespace bandvox::app

@@ -4,6 +4,7 @@
 #include "source/test_meshes.h"
 
 #include <bandvox/bandlimit/surface_to_density.h>
+#include <bandvox/bandlimit/surface_to_vdb.h>
 #include <bandvox/core/error.h>
 #include <bandvox/source/mesh_source.h>
 #include <bandvox/source/shapes.h>
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <string>
 
@@ -72,6 +74,20 @@ TEST(SmallObjects, TeethFinerThanTheLatticeKeepToTheTolerance) {
         EXPECT_LE(result.metadata.closureError, options.tolerance);
         EXPECT_NEAR(result.metadata.gridVolume / source.volume(), 1, 1e-4);
     }
+}
+
+TEST(SmallObjects, AFinerQuadratureIsTakenWithinALimitOfMemoryToo) {
+    const MeshSource source = wheel(5000, 0.6);
+    DensityOptions options;
+    options.voxelSize = 2.6 / 30;
+    const DensityResult whole = surfaceToDensity(source, options);
+    EXPECT_GT(whole.refinements, 0);
+    const VdbTarget target{.file = "unused.vdb", .write = {}, .memoryLimit = std::int64_t(1) << 40};
+    const DensityResult made = surfaceToSpooledDensity(source, options, target);
+    EXPECT_EQ(made.refinements, whole.refinements);
+    EXPECT_EQ(made.surfaceSamples, whole.surfaceSamples);
+    EXPECT_EQ(made.metadata.closureError, whole.metadata.closureError);
+    EXPECT_EQ(made.metadata.gridVolume, whole.metadata.gridVolume);
 }
 
 // Twice the resolution is four times the surface; a part does not grow, and borders vary.
