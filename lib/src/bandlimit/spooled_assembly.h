@@ -31,8 +31,6 @@ class SpooledAssembly {
     /// Error(ErrorKind::Runtime) if there is no room for the values.
     void add(std::vector<ColumnBlocks> columns);
 
-    bool isEmpty() const { return mNext == 0; }
-
     /// Bytes that it holds, and that finish() and what is made of the grid need.
     double memory() const;
     double finalMemory() const;

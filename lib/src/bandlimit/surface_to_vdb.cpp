@@ -28,7 +28,8 @@ namespace {
 /// What writing, and whatever else is small, may take, bytes.
 constexpr double kReserve = 20 << 20;
 
-/// Of blocks that a budget is for, the allocator and what is made of them take so much more.
+/// Of blocks that a budget is for, the allocator and what is made of them take so much more, by
+/// measurement up to an eighth.
 constexpr double kOverhead = 1.15;
 
 /// What is known of the memory that work within a limit may take, and takes.
