@@ -107,6 +107,25 @@ TEST_F(MemoryLimit, ThatIsTooLowIsAnError) {
     EXPECT_EQ(mFolder.contents(), Names{});
 }
 
+// Sharp filters take large tiles and many samples.
+TEST_F(MemoryLimit, IsKeptByLargeTiles) {
+    const Names sharp{"convert", "shape:torus", "-o",        "o.vdb", "-r",      "150",
+                      "--order", "64",          "--threads", "2",     "--cutoff"};
+    const auto limited = [&](const char* cutoff, const char* limit) {
+        Names arguments = sharp;
+        arguments.insert(arguments.end(), {cutoff, "--memory-limit", limit});
+        return run(arguments);
+    };
+    const RunResult refused = limited("0.3", "200M");
+    EXPECT_EQ(refused.status, 5) << refused.err;
+    const RunResult made = limited("0.5", "600M");
+    EXPECT_EQ(made.status, 0) << made.err;
+#ifndef BANDVOX_SANITIZED
+    EXPECT_LT(refused.peakBytes, std::int64_t(200) << 20);
+    EXPECT_LT(made.peakBytes, std::int64_t(600) << 20);
+#endif
+}
+
 TEST_F(MemoryLimit, LeavesNothingWhereTheDiskIsFull) {
     const RunResult result = run({"convert", "shape:torus", "-r", "500", "-o", "o.vdb", "--threads",
                                   "2", "--memory-limit", "110M"},

@@ -154,6 +154,13 @@ TEST(BsplineSurface, CurvatureOfAParaboloid) {
     EXPECT_NEAR(sphere.normal()[0], -0.6, 1e-14);
 }
 
+TEST(BsplineSurface, IsNoNumberWhereThePlaceIsNone) {
+    const BsplineSurface surface = randomSurface({3, 4}, 1, 5);
+    const double none = std::nan("");
+    EXPECT_TRUE(std::isnan(surface.value(none, 0)));
+    EXPECT_TRUE(std::isnan(surface.value(0, none)));
+}
+
 TEST(BsplineSurface, RefusesSizesThatDoNotFit) {
     EXPECT_THROW(BsplineSurface({0, 0, 1, 1}, {2, 2}, 1, std::vector<double>(24)), Error);
     EXPECT_THROW(BsplineSurface({0, 0, 0, 1}, {2, 2}, 1), Error);

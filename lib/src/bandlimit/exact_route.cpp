@@ -6,10 +6,12 @@
 #include "core/words.h"
 
 #include <bandvox/core/error.h>
+#include <bandvox/source/quadrature.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 namespace bandvox {
@@ -49,6 +51,21 @@ void warnOfVolume(const DensityMetadata& metadata, std::vector<std::string>& war
                        (isHeld ? " %, since the object is small in voxels; use more of them, or a "
                                  "smaller tolerance"
                                : " %, since the lattice cannot hold the filter"));
+}
+
+// Points on a surface for each square voxel, as its elements are split: by up to twice as many as
+// if the largest ones that a rule is for would fit.
+double samplesPerArea(const SurfaceQuadrature& quadrature) {
+    constexpr double kSplit = 2;
+    const double triangle = std::sqrt(3.0) / 4;  // area of one whose sides are 1
+    double fewest = std::numeric_limits<double>::max();
+    for (int rule = 0; rule < kTriangleRules; ++rule) {
+        const double edge = quadrature.triangleEdge[static_cast<std::size_t>(rule)];
+        if (!(edge > 0)) continue;
+        const auto points = static_cast<double>(triangleRule(rule).size());
+        fewest = std::min(fewest, points / (triangle * edge * edge));
+    }
+    return kSplit * fewest;
 }
 
 }  // namespace
@@ -99,7 +116,8 @@ ExactRouteMemory::ExactRouteMemory(const ExactRoute& route, const TileFilter& fi
     const double crossSection = static_cast<double>(plan.side) * plan.side;
     const double inTile = count * std::min(1.0, 3 * crossSection / area);
     constexpr double kGrowth = 2;  // of a vector that is filled without knowing its end
-    thread += kGrowth * sizeof(SurfaceSample) * std::max(8 * crossSection, inTile);
+    const double samples = std::max(8.0, 3 * samplesPerArea(plan.quadrature)) * crossSection;
+    thread += kGrowth * sizeof(SurfaceSample) * std::max(samples, inTile);
     // So many tiles along an axis meet an element of no size.
     const double tilesOfElement = 1 + 2.0 * (plan.halo + 1) / plan.interior;
     elements = sizeof(std::uint32_t) * count * tilesOfElement * (tilesOfElement + 1);

@@ -32,6 +32,26 @@ constexpr double kReserve = 20 << 20;
 /// measurement up to an eighth.
 constexpr double kOverhead = 1.15;
 
+std::string inMebibytes(double bytes) {
+    return std::to_string(std::llround(std::ceil(bytes / (1 << 20)))) + " MiB";
+}
+
+[[noreturn]] void failMemory(const ExactRoute& route, const std::string& what, double limit) {
+    throw Error(ErrorKind::Memory, route.wanted() + what + " of memory, more than the limit of " +
+                                       inMebibytes(limit) +
+                                       "; raise it, or take larger voxels or fewer threads");
+}
+
+// A tile and the filter's table have to fit, whatever else there is. To be asked before they are
+// made.
+void requireTile(const ExactRoute& route, std::int64_t limit) {
+    const double side = route.plan.side;
+    const double bytes = sizeof(float) * (std::pow(side, 3) + std::pow(side / 2 + 1, 3));
+    const double all = static_cast<double>(residentMemory()) + bytes;
+    if (all <= static_cast<double>(limit)) return;
+    failMemory(route, " needs more than " + inMebibytes(all), static_cast<double>(limit));
+}
+
 /// What is known of the memory that work within a limit may take, and takes.
 class MemoryBudget {
   public:
@@ -46,26 +66,27 @@ class MemoryBudget {
         mHeld = static_cast<double>(residentMemory());
     }
 
+    /// Throws Error(ErrorKind::Memory) if the process has come to hold more than the limit.
+    void requireKept() const {
+        const auto peak = static_cast<double>(peakMemory());
+        if (peak <= mLimit || peak <= mPeakBefore) return;
+        failMemory(mRoute, " took " + inMebibytes(peak), mLimit);
+    }
+
     /// For blocks, beside `others`.
     double left(double others) const { return (mLimit - mHeld - mFixed - others) / kOverhead; }
 
     /// Throws Error(ErrorKind::Memory) unless there is room for `bytes` beside what is held.
     void require(double bytes) const {
         if (bytes <= left(0)) return;
-        throw Error(ErrorKind::Memory, mRoute.wanted() + " needs about " +
-                                           inMebibytes(mLimit + kOverhead * (bytes - left(0))) +
-                                           " of memory, more than the limit of " +
-                                           inMebibytes(mLimit) +
-                                           "; raise it, or take larger voxels or fewer threads");
+        failMemory(mRoute, " needs about " + inMebibytes(mLimit + kOverhead * (bytes - left(0))),
+                   mLimit);
     }
 
   private:
-    static std::string inMebibytes(double bytes) {
-        return std::to_string(std::llround(std::ceil(bytes / (1 << 20)))) + " MiB";
-    }
-
     const ExactRoute& mRoute;
     double mLimit, mHeld = 0, mFixed;
+    double mPeakBefore = static_cast<double>(peakMemory());
 };
 
 /// The columns of a grid that were filled in parts.
@@ -89,6 +110,7 @@ std::optional<FilledInParts> fillInParts(const ExactRoute& route, const TileFilt
         const double held = filled.assembly ? filled.assembly->memory() : 0;
         const double left = budget.left(held);
         FilledColumns part = filler.fillNext(left, progress);
+        budget.requireKept();
         budget.require(held + filler.leastMemory());
         std::vector<ColumnStatistics>& statistics = filled.measured.statistics;
         statistics.insert(statistics.end(), part.statistics.begin(), part.statistics.end());
@@ -156,6 +178,7 @@ DensityResult surfaceToSpooledDensity(const BoundarySource& source, const Densit
     }
     // Decide how the work is cut up, and whether it can fit.
     ExactRoute route(source, options);
+    requireTile(route, target.memoryLimit);
     const TileFilter filter(route.plan);
     const ExactRouteMemory memory(route, filter);
     MemoryBudget budget(route, memory, target.memoryLimit);
@@ -168,6 +191,7 @@ DensityResult surfaceToSpooledDensity(const BoundarySource& source, const Densit
     FilledInParts filled =
         fillToToleranceInParts(route, filter, target, budget, result.refinements, progress);
     const ColumnStatistics statistics = filled.measured.total();
+    budget.requireKept();
     budget.measure();
     result.overlaps =
         !options.sumOverlaps && findOverlap(source, options, route.layout,

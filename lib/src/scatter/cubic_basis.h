@@ -6,14 +6,15 @@
 namespace bandvox {
 
 /// Where a coordinate lies among the knots 0, 1, ..., `cells`: the first of the four control points
-/// that count there, and the place in the cell, 0 to 1. Outside, the first or last cell goes on.
+/// that count there, and the place in the cell, 0 to 1. Outside, the first or last cell goes on;
+/// what is no number has a place that is none.
 struct KnotPlace {
     int cell;
     double place;
 };
 
 inline KnotPlace findCell(double knot, int cells) {
-    const int cell = static_cast<int>(std::clamp(knot, 0.0, cells - 1.0));
+    const int cell = knot > 0 ? static_cast<int>(std::min(knot, cells - 1.0)) : 0;
     return {cell, knot - cell};
 }
 

@@ -4,6 +4,7 @@
 #include <bandvox/source/bspline_patch.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace bandvox {
@@ -81,6 +82,9 @@ void requireValid(const BsplineNet& net) {
                    std::to_string(knots.size()) + " knots along an axis of degree " +
                    std::to_string(degree) + "; expected more points than that, and " +
                    std::to_string(expected) + " knots");
+        }
+        if (!std::all_of(knots.begin(), knots.end(), [](double k) { return std::isfinite(k); })) {
+            refuse("knots that are not finite; expected numbers");
         }
         if (!std::is_sorted(knots.begin(), knots.end())) {
             refuse("knots that descend; expected none");
