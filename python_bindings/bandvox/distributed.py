@@ -114,7 +114,7 @@ def run_frames(
                   tuple(words + ["--frames", str(number)]), target.name,
                   str(target.parent / with_frame(target.name, number)) if skip_existing else "")
              for number in numbers]
-    run = _Run(client, target, Slots(threads, memory), retries, len(tasks), progress)
+    run = _Run(client, target, _slots(threads, memory), retries, len(tasks), progress)
     with run:
         run.do(tasks, keep_going, publish=True)
     report = run.report()
@@ -152,12 +152,13 @@ def convert_volume(
     tasks = [Task(f"shard {i}/{shards}", f"bandvox-shard-{i:04d}",
                   tuple(words + ["--shard", f"{i}/{shards}"]), "part.vdb")
              for i in range(1, shards + 1)]
-    run = _Run(client, target, Slots(threads, memory), retries, shards + 1, progress)
+    run = _Run(client, target, _slots(threads, memory), retries, shards + 1, progress)
     with run:
         parts = run.do(tasks, keep_going=False, publish=False)
         if len(parts) == shards:
             joining = [executable, "merge", *(parts[task.name].files[0] for task in tasks)]
-            joining += option_words({name: options[name] for name in ("half", "compression")
+            # Parts that are kept as 16 bits are joined as such.
+            joining += option_words({name: options[name] for name in ("compression",)
                                      if name in options})
             run.do([Task("merge", "bandvox-merge", tuple(joining), target.name)],
                    keep_going=False, publish=True)
@@ -241,6 +242,13 @@ class _Run:
         return self.found._replace(tries=self.tries, seconds=time.monotonic() - self.start)
 
 
+def _slots(threads: Optional[int], memory: Optional[int]) -> Slots:
+    for name, value in (("threads", threads), ("memory", memory)):
+        if value is not None and (not isinstance(value, int) or value < 1):
+            raise ValueError(f"{name} is {value!r}; expected a whole number of 1 or more, or None")
+    return Slots(threads, memory)
+
+
 def _absolute(path: Path) -> str:
     """A name that holds on other machines; shapes have none."""
     name = os.fspath(path)
@@ -248,11 +256,15 @@ def _absolute(path: Path) -> str:
 
 
 def option_words(options: Dict[str, Any]) -> List[str]:
-    """Keywords as words of the command line: True is a flag, sequences have commas between."""
+    """Keywords as words of the command line: True is a flag, sequences have commas between. Files
+    are named as they are on other machines."""
     reserved = {"output", "frames", "shard", "keep_going", "skip_existing", "threads", "quiet",
                 "verbose", "progress", "stats", "help", "version"}
+    files = {"like", "onto", "config", "camera_file", "environment"}
     words = []
     for keyword, value in options.items():
+        if isinstance(value, os.PathLike) or (keyword in files and isinstance(value, str)):
+            value = os.path.abspath(value)
         if keyword in reserved:
             raise ValueError(f"{keyword} is not an option of the command here; see the arguments")
         name = "--" + keyword.rstrip("_").replace("_", "-")
@@ -261,7 +273,7 @@ def option_words(options: Dict[str, Any]) -> List[str]:
         elif isinstance(value, (list, tuple)):
             words.append(name + "=" + ",".join(str(one) for one in value))
         elif value is not None and value is not False:
-            words.append(f"{name}={os.fspath(value) if isinstance(value, os.PathLike) else value}")
+            words.append(f"{name}={value}")
     return words
 
 

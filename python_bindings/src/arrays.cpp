@@ -128,6 +128,16 @@ openvdb::Mat4d transformOf(const py::handle& object) {
     if (!std::isfinite(volume) || volume == 0) {
         refuse("transform", "directions in one plane, or no numbers", "three directions");
     }
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!std::isfinite(rows(3, axis))) {
+            refuse("transform", "a place that is not finite", "numbers");
+        }
+    }
+    // What OpenVDB can invert.
+    constexpr double kSmallestVolume = 3e-15;
+    if (std::abs(volume) < kSmallestVolume) {
+        refuse("transform", "voxels of a volume of " + std::to_string(volume), "3e-15 or more");
+    }
     return rows;
 }
 

@@ -192,8 +192,10 @@ py::object ofFunction(const py::object& function, const BandlimitRequest& reques
     const openvdb::BBoxd box = boundsOfFunction(request.bounds);
     const CallableField field(function, box);
     try {
-        return madeDensity(
-            request, [&](Progress& progress) { return densityOfField(field, request, progress); });
+        return madeDensity(request, [&](Progress& progress) {
+            field.watch(progress);
+            return densityOfField(field, request, progress);
+        });
     } catch (const Error&) {
         field.rethrow();
         throw;

@@ -193,6 +193,12 @@ std::shared_ptr<GridObject<Grid>> fromArray(const py::object& array, const py::o
         if (!(side[0] > 0 && side[1] > 0 && side[2] > 0 && std::isfinite(side.length()))) {
             throw Error(ErrorKind::Usage, "voxel_size: expected finite numbers above 0");
         }
+        constexpr double kSmallestVolume = 3e-15;  // that OpenVDB can invert
+        if (side[0] * side[1] * side[2] < kSmallestVolume) {
+            throw Error(ErrorKind::Usage,
+                        "voxel_size: found voxels of a volume below 3e-15, which OpenVDB does not "
+                        "take; expected larger ones, as of another unit");
+        }
         grid.transform().postScale(side);
     }
     if constexpr (!kIsMask<Grid>) requireNumbers(values);

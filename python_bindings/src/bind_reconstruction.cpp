@@ -1,6 +1,7 @@
 // Grids, read between their voxels.
 
 #include "arrays.h"
+#include "background.h"
 #include "bindings.h"
 #include "grid_object.h"
 
@@ -76,10 +77,21 @@ class ReconstructionObject {
   private:
     template <typename Visit>
     void forPlaces(const std::vector<Vec3d>& places, const Visit& visit) const {
-        constexpr std::size_t kTogether = 4096;
-        const py::gil_scoped_release unlocked;
+        if (places.size() <= kTogether) {
+            const py::gil_scoped_release unlocked;
+            visitAll(places, visit, silentProgress());
+            return;
+        }
+        runInBackground([&](Progress& progress) { visitAll(places, visit, progress); }, py::none(),
+                        0);
+    }
+
+    template <typename Visit>
+    void visitAll(const std::vector<Vec3d>& places, const Visit& visit,
+                  const Progress& progress) const {
         const std::size_t pieces = (places.size() + kTogether - 1) / kTogether;
         parallelFor(static_cast<std::int64_t>(pieces), [&](std::int64_t piece) {
+            progress.throwIfInterrupted();
             const auto probe = mReconstruction->probe();
             const std::size_t first = static_cast<std::size_t>(piece) * kTogether;
             const std::size_t last = std::min(places.size(), first + kTogether);
@@ -88,6 +100,9 @@ class ReconstructionObject {
             }
         });
     }
+
+    // Fewer are not worth another thread.
+    static constexpr std::size_t kTogether = 4096;
 
     openvdb::FloatGrid::Ptr mGrid;
     std::unique_ptr<Reconstruction> mReconstruction;

@@ -120,8 +120,10 @@ VoxelResult voxelsOf(const py::object& source, const VoxelRequest& request,
     }
     const CallableField field(source, boundsOfFunction(bounds));
     try {
-        return work(
-            [&](Progress& progress) { return fieldToVoxels(field, request.voxels, progress); });
+        return work([&](Progress& progress) {
+            field.watch(progress);
+            return fieldToVoxels(field, request.voxels, progress);
+        });
     } catch (const Error&) {
         field.rethrow();
         throw;

@@ -41,6 +41,7 @@ CallableField::CallableField(py::object function, const openvdb::BBoxd& bounds)
 void CallableField::sampleRow(const openvdb::Vec3d& start, const openvdb::Vec3d& step,
                               std::span<float> values) const {
     if (mHasFailed) throw Error(ErrorKind::Interrupted, "the function has thrown");
+    if (const Progress* progress = mProgress) progress->throwIfInterrupted();
     const py::gil_scoped_acquire locked;
     try {
         const auto count = static_cast<py::ssize_t>(values.size());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bandvox/core/progress.h>
 #include <bandvox/source/field_source.h>
 
 #include <pybind11/pybind11.h>
@@ -25,7 +26,11 @@ class CallableField final : public FieldSource {
     std::string name() const override { return mName; }
     openvdb::BBoxd bounds() const override { return mBounds; }
 
-    /// Throws Error(ErrorKind::Interrupted) once the function has thrown.
+    /// Has rows be refused from when that is interrupted; it has to live as long as they are asked
+    /// for.
+    void watch(const Progress& progress) const { mProgress = &progress; }
+
+    /// Throws Error(ErrorKind::Interrupted) once the function has thrown, or the work is stopped.
     void sampleRow(const openvdb::Vec3d& start, const openvdb::Vec3d& step,
                    std::span<float> values) const override;
 
@@ -38,6 +43,7 @@ class CallableField final : public FieldSource {
     std::string mName;
     mutable std::atomic<bool> mHasFailed{false};
     mutable std::exception_ptr mFailure;
+    mutable std::atomic<const Progress*> mProgress{nullptr};
 };
 
 }  // namespace bandvox::python

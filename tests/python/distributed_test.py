@@ -76,6 +76,27 @@ def test_eight_shards_are_what_one_machine_makes(client, tmp_path):
     assert seen[-1] == (9, 9, "merge")
 
 
+def test_shards_of_16_bits_are_joined(client, tmp_path):
+    whole = on_one_machine(tmp_path, "shape:torus", "--resolution", "40", "--half")
+    farm.convert_volume(client, "shape:torus", tmp_path / "torus.vdb", shards=2, resolution=40,
+                        half=True, executable=COMMAND)
+    expect_same(tmp_path / "torus.vdb", whole)
+
+
+def test_files_among_options_hold_on_other_machines(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    here = os.getcwd()
+    assert farm.option_words({"like": "first.vdb", "onto": pathlib.Path("a", "b.vdb"), "half": True,
+                              "order": 3}) == [f"--like={here}/first.vdb", f"--onto={here}/a/b.vdb",
+                                               "--half", "--order=3"]
+
+
+def test_what_a_task_takes_is_a_number(client, tmp_path):
+    for wrong in ({"threads": 0}, {"memory": "1G"}, {"memory": -1}):
+        with pytest.raises(ValueError, match="whole number"):
+            farm.convert_volume(client, "shape:cube", tmp_path / "cube.vdb", shards=2, **wrong)
+
+
 def wait_for(holds):
     deadline = time.monotonic() + 60
     while not holds() and time.monotonic() < deadline:

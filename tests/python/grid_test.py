@@ -172,6 +172,14 @@ def test_wrong_arrays_are_named(torus):
         bandvox.Grid.from_array(sample(), voxel_size=1, transform=np.eye(4))
     with pytest.raises(bandvox.UsageError):
         bandvox.Grid.from_array(sample(), transform=np.zeros((4, 4)))
+    moved = np.eye(4)
+    moved[0, 3] = np.nan
+    with pytest.raises(bandvox.UsageError, match="not finite"):
+        bandvox.Grid.from_array(sample(), transform=moved)
+    with pytest.raises(bandvox.UsageError, match="3e-15"):
+        bandvox.Grid.from_array(sample(), voxel_size=1e-6)
+    with pytest.raises(bandvox.UsageError, match="3e-15"):
+        bandvox.Grid.from_array(sample(), transform=np.diag([1e-6, 1e-6, 1e-6, 1]))
     with pytest.raises(bandvox.UsageError, match="whole numbers"):
         bandvox.Grid.from_array(sample(), origin=(0.5, 0, 0))
     with pytest.raises(MemoryError):

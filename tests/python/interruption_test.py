@@ -61,6 +61,34 @@ def test_reading_is_interrupted(noise, tmp_path):
     assert len(bandvox.read_vdb(tmp_path / "noise.vdb")) == 1
 
 
+def interrupt_soon():
+    """Ctrl-C while what follows is at work."""
+    signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+    signal.setitimer(signal.ITIMER_REAL, 0.2)
+
+
+def test_reading_between_voxels_is_interrupted(noise):
+    places = np.random.RandomState(2).random_sample((20_000_000, 3)) * 150
+    field = bandvox.Reconstruction(noise)
+    interrupt_soon()
+    with pytest.raises(KeyboardInterrupt):
+        field.hessian(places)
+
+
+def test_no_more_rows_are_asked_of_a_function_when_interrupted():
+    calls = []
+
+    def slow(x, y, z):
+        calls.append(time.monotonic())
+        time.sleep(0.01)
+        return np.zeros_like(x)
+
+    interrupt_soon()
+    with pytest.raises(KeyboardInterrupt):
+        bandvox.bandlimit(slow, bounds=((-1, -1, -1), (1, 1, 1)), resolution=40)
+    assert len(calls) < 200
+
+
 def test_a_turntable_is_interrupted(noise):
     with pytest.raises(KeyboardInterrupt):
         bandvox.turntable(noise, 100000, progress=interrupt)

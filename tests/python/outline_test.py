@@ -63,6 +63,8 @@ def test_bsplines_become_patches():
     np.testing.assert_allclose(patches.normal(0, side), patches.normal(one, across), atol=1e-12)
     with pytest.raises(bandvox.UsageError):
         bandvox.Patches.from_bspline(control, [3, 2, 1, 0, 0, 0, 0], [0, 0, 0, 1, 2, 2, 2])
+    with pytest.raises(bandvox.UsageError, match="finite"):
+        bandvox.Patches.from_bspline(control, [np.nan] * 10, [0, 0, 0, 1, 2, 2, 2])
 
 
 def test_wrong_nets_are_named():
