@@ -16,6 +16,7 @@ This module needs the package `distributed`; nothing else of Bandvox does.
 
 from __future__ import annotations
 
+import numbers
 import os
 import pathlib
 import re
@@ -158,8 +159,7 @@ def convert_volume(
         if len(parts) == shards:
             joining = [executable, "merge", *(parts[task.name].files[0] for task in tasks)]
             # Parts that are kept as 16 bits are joined as such.
-            joining += option_words({name: options[name] for name in ("compression",)
-                                     if name in options})
+            joining += option_words({"compression": options.get("compression")})
             run.do([Task("merge", "bandvox-merge", tuple(joining), target.name)],
                    keep_going=False, publish=True)
     report = run.report()
@@ -244,7 +244,7 @@ class _Run:
 
 def _slots(threads: Optional[int], memory: Optional[int]) -> Slots:
     for name, value in (("threads", threads), ("memory", memory)):
-        if value is not None and (not isinstance(value, int) or value < 1):
+        if value is not None and (not isinstance(value, numbers.Integral) or value < 1):
             raise ValueError(f"{name} is {value!r}; expected a whole number of 1 or more, or None")
     return Slots(threads, memory)
 

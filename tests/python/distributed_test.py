@@ -92,6 +92,7 @@ def test_files_among_options_hold_on_other_machines(tmp_path, monkeypatch):
 
 
 def test_what_a_task_takes_is_a_number(client, tmp_path):
+    assert farm._slots(np.int64(2), None).threads == 2
     for wrong in ({"threads": 0}, {"memory": "1G"}, {"memory": -1}):
         with pytest.raises(ValueError, match="whole number"):
             farm.convert_volume(client, "shape:cube", tmp_path / "cube.vdb", shards=2, **wrong)
