@@ -201,11 +201,13 @@ void writeFit(CommandRun& run, AtomicFile& output, const FitOutput& request,
             case FitOutput::Kind::Samples:
                 return writeSamples(file, surface, samples, request.quantities, run.progress());
             case FitOutput::Kind::Picture:
-                return writeImage(file,
-                                  heightFieldImage(surface, samples, 0, red, request.quantities),
-                                  {.color = red >= 0}, run.progress());
+                return writeImage(
+                    file,
+                    heightFieldImage(surface, samples, 0, red, request.quantities, run.progress()),
+                    {.color = red >= 0}, run.progress());
             default:
-                return writeMesh(file, heightFieldMesh(surface, samples, 0, red), run.progress());
+                return writeMesh(file, heightFieldMesh(surface, samples, 0, red, run.progress()),
+                                 run.progress());
         }
     });
 }

@@ -5,6 +5,7 @@
 #include "errors.h"
 #include "mesh_object.h"
 
+#include <bandvox/core/atomic_file.h>
 #include <bandvox/mesh/write_mesh.h>
 #include <bandvox/source/read_mesh.h>
 
@@ -94,10 +95,14 @@ std::vector<openvdb::Vec3f> normalsOf(const Mesh& mesh) {
 }
 
 void writeMeshObject(const MeshObject& mesh, const std::filesystem::path& path) {
-    SurfaceMesh surface = mesh.surface;
-    if (surface.normals.empty()) surface.normals = normalsOf(surface.mesh);
-    const py::gil_scoped_release unlocked;
-    writeMesh(path, surface);
+    const auto write = [&](Progress& progress) {
+        SurfaceMesh surface = mesh.surface;
+        if (surface.normals.empty()) surface.normals = normalsOf(surface.mesh);
+        AtomicFile file(path);
+        writeMesh(file, surface, progress);
+        file.commit();
+    };
+    runInBackground(write, py::none(), 0);
 }
 
 template <typename Vector>

@@ -83,20 +83,27 @@ py::array sampled(const SurfaceObject& self, int samples, const std::vector<std:
     for (const SurfaceQuantity one : quantities) {
         width += static_cast<std::size_t>(self.surface.columns() * numbersOf(one));
     }
-    std::vector<double> numbers(places * width);
-    {
-        const py::gil_scoped_release unlocked;
-        std::size_t at = 0;
-        for (int column = 0; column < self.surface.columns(); ++column) {
-            for (const SurfaceQuantity one : quantities) {
-                for (const auto& values : sampleQuantity(self.surface, counts, column, one)) {
-                    for (std::size_t i = 0; i < places; ++i) numbers[i * width + at] = values[i];
-                    ++at;
+    py::array_t<double> made({counts[0], counts[1], static_cast<int>(width)});
+    double* const numbers = made.mutable_data();
+    constexpr std::size_t kBetweenLooks = std::size_t(1) << 20U;
+    runInBackground(
+        [&](Progress& progress) {
+            std::size_t at = 0;
+            for (int column = 0; column < self.surface.columns(); ++column) {
+                for (const SurfaceQuantity one : quantities) {
+                    for (const auto& values :
+                         sampleQuantity(self.surface, counts, column, one, progress)) {
+                        for (std::size_t i = 0; i < places; ++i) {
+                            if (i % kBetweenLooks == 0) progress.throwIfInterrupted();
+                            numbers[i * width + at] = values[i];
+                        }
+                        ++at;
+                    }
                 }
             }
-        }
-    }
-    return ownedArray(std::move(numbers), {counts[0], counts[1], static_cast<py::ssize_t>(width)});
+        },
+        py::none(), 0);
+    return made;
 }
 
 std::shared_ptr<PatchesObject> patchesOf(const SurfaceObject& self) {
@@ -126,8 +133,12 @@ std::shared_ptr<MeshObject> meshOfSurface(const SurfaceObject& self, int samples
     auto mesh = std::make_shared<MeshObject>();
     mesh->name = self.name;
     const auto counts = sampleCounts(self.surface, samples);
-    const py::gil_scoped_release unlocked;
-    mesh->surface = heightFieldMesh(self.surface, counts, 0, app::redColumn(self.columns));
+    runInBackground(
+        [&](Progress& progress) {
+            mesh->surface =
+                heightFieldMesh(self.surface, counts, 0, app::redColumn(self.columns), progress);
+        },
+        py::none(), 0);
     return mesh;
 }
 
@@ -150,20 +161,22 @@ void saveSurface(const SurfaceObject& self, const std::filesystem::path& path, i
         throw Error(ErrorKind::Usage,
                     "quantities are for .npy and .exr, and the file is '" + path.string() + "'");
     }
-    const py::gil_scoped_release unlocked;
-    AtomicFile file(path);
-    if (extension == ".bpt") {
-        writeBezierPatches(file, self.surface);
-    } else if (extension == ".npy") {
-        if (quantities.empty()) quantities = {SurfaceQuantity::Value};
-        writeSamples(file, self.surface, counts, quantities);
-    } else if (extension == ".exr") {
-        writeImage(file, heightFieldImage(self.surface, counts, 0, red, quantities),
-                   {.color = red >= 0});
-    } else {
-        writeMesh(file, heightFieldMesh(self.surface, counts, 0, red));
-    }
-    file.commit();
+    if (extension == ".npy" && quantities.empty()) quantities = {SurfaceQuantity::Value};
+    const auto write = [&](Progress& progress) {
+        AtomicFile file(path);
+        if (extension == ".bpt") {
+            writeBezierPatches(file, self.surface, 0, progress);
+        } else if (extension == ".npy") {
+            writeSamples(file, self.surface, counts, quantities, progress);
+        } else if (extension == ".exr") {
+            writeImage(file, heightFieldImage(self.surface, counts, 0, red, quantities, progress),
+                       {.color = red >= 0}, progress);
+        } else {
+            writeMesh(file, heightFieldMesh(self.surface, counts, 0, red, progress), progress);
+        }
+        file.commit();
+    };
+    runInBackground(write, py::none(), 0);
 }
 
 py::object densityUnder(const SurfaceObject& self, const std::optional<double>& base,

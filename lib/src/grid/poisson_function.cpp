@@ -15,7 +15,9 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -23,12 +25,42 @@
 namespace bandvox {
 namespace {
 
-/// Scales by the diagonal, as usual, and lets the solver stop when the caller wants to.
+/// Whose work this thread does: CGAL has no place to hand that in where it takes long.
+thread_local const Progress* asked = nullptr;
+
+/// Throws if the caller wants the work to stop.
+void askWhetherToStop() {
+    if (asked != nullptr) asked->throwIfInterrupted();
+}
+
+/// Has a caller asked, for as long as this lives.
+class AskedProgress {
+  public:
+    explicit AskedProgress(const Progress& progress) { asked = &progress; }
+    ~AskedProgress() { asked = nullptr; }
+    AskedProgress(const AskedProgress&) = delete;
+    AskedProgress& operator=(const AskedProgress&) = delete;
+};
+
+/// Lets the triangulation stop, which asks this of each point and the cells around it.
+struct StoppableKernel : CGAL::Exact_predicates_inexact_constructions_kernel {
+    using Base = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+    using SideOfSphere = Base::Side_of_oriented_sphere_3;
+    struct Side_of_oriented_sphere_3 : SideOfSphere {
+        template <typename... Points>
+        CGAL::Oriented_side operator()(const Points&... points) const {
+            askWhetherToStop();
+            return SideOfSphere::operator()(points...);
+        }
+    };
+    Side_of_oriented_sphere_3 side_of_oriented_sphere_3_object() const { return {}; }
+};
+
+/// Scales by the diagonal, as usual, and lets the solver stop.
 class StoppablePreconditioner : public Eigen::DiagonalPreconditioner<double> {
   public:
     using Base = Eigen::DiagonalPreconditioner<double>;
-
-    void setProgress(const Progress& progress) { mProgress = &progress; }
 
     template <typename Matrix>
     StoppablePreconditioner& compute(const Matrix& matrix) {
@@ -38,17 +70,25 @@ class StoppablePreconditioner : public Eigen::DiagonalPreconditioner<double> {
 
     template <typename Right>
     auto solve(const Eigen::MatrixBase<Right>& right) const {
-        if (mProgress != nullptr) mProgress->throwIfInterrupted();
+        askWhetherToStop();
         return Base::solve(right);
     }
-
-  private:
-    const Progress* mProgress = nullptr;
 };
 
-using SymmetricMatrix = CGAL::Eigen_sparse_symmetric_matrix<double>;
+/// Lets the matrix's making stop.
+class StoppableMatrix : public CGAL::Eigen_sparse_symmetric_matrix<double> {
+  public:
+    using Base = CGAL::Eigen_sparse_symmetric_matrix<double>;
+
+    using Base::Base;
+    void set_coef(std::size_t row, std::size_t column, double number, bool isNew = false) {
+        askWhetherToStop();
+        Base::set_coef(row, column, number, isNew);
+    }
+};
+
 using GradientSolver =
-    Eigen::ConjugateGradient<SymmetricMatrix::EigenType, Eigen::Lower, StoppablePreconditioner>;
+    Eigen::ConjugateGradient<StoppableMatrix::EigenType, Eigen::Lower, StoppablePreconditioner>;
 
 }  // namespace
 }  // namespace bandvox
@@ -56,14 +96,14 @@ using GradientSolver =
 // So CGAL is told which of its matrices a solver takes.
 template <>
 struct CGAL::internal::Get_eigen_matrix<bandvox::GradientSolver, double> {
-    using type = bandvox::SymmetricMatrix;
+    using type = bandvox::StoppableMatrix;
 };
 
 namespace bandvox {
 namespace {
 
 using openvdb::Vec3d;
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Kernel = StoppableKernel;
 using Oriented = std::pair<Kernel::Point_3, Kernel::Vector_3>;
 using Function = CGAL::Poisson_reconstruction_function<Kernel>;
 using Cell = Function::Cell_handle;
@@ -149,7 +189,9 @@ double valueIn(const Cell& cell, const Kernel::Point_3& place) {
 struct PoissonFunction::Implementation {
     explicit Implementation(const std::vector<Oriented>& points, Progress& progress)
         : spacing(CGAL::compute_average_spacing<CGAL::Sequential_tag>(
-              points, kNeighbors, CGAL::parameters::point_map(PointOf()))),
+              points, kNeighbors,
+              CGAL::parameters::point_map(PointOf()).callback(
+                  std::function<bool(double)>([&](double) { return !progress.interrupted(); })))),
           function(points.begin(), points.end(), PointOf(), NormalOf(),
                    InsertionVisitor(progress)) {}
 
@@ -166,6 +208,7 @@ PoissonFunction::PoissonFunction(const OrientedPoints& points, Progress& progres
     }
     requireMemory(kBytesPerPoint * double(count), "the triangulation of the points");
     const ProgressStage stage(progress, "fitting the surface", static_cast<std::int64_t>(count));
+    const AskedProgress here(progress);
     mImplementation = std::make_unique<Implementation>(asOriented(points), progress);
     Function& function = mImplementation->function;
     if (function.tr().dimension() < 3) {
@@ -174,7 +217,6 @@ PoissonFunction::PoissonFunction(const OrientedPoints& points, Progress& progres
                     "a solid's surface");
     }
     Solver solver;
-    solver.solver().preconditioner().setProgress(progress);
     if (!function.compute_implicit_function(solver, InsertionVisitor(progress))) {
         throw Error(ErrorKind::Result,
                     "no function fits the normals: the system of equations has no solution that "

@@ -152,7 +152,8 @@ SurfaceJet BsplineSurface::jet(double x, double y, int column) const {
             sum(0, 2) * perY * perY};
 }
 
-std::vector<double> BsplineSurface::sample(const GridSampling& grid) const {
+std::vector<double> BsplineSurface::sample(const GridSampling& grid,
+                                           const Progress& progress) const {
     if (grid.nx < 2 || grid.ny < 2 || grid.column < 0 || grid.column >= mColumns || grid.dx < 0 ||
         grid.dx > 3 || grid.dy < 0 || grid.dy > 3) {
         throw Error(ErrorKind::Usage,
@@ -169,6 +170,7 @@ std::vector<double> BsplineSurface::sample(const GridSampling& grid) const {
     const auto ny = static_cast<std::size_t>(grid.ny);
     std::vector<double> samples(static_cast<std::size_t>(grid.nx) * ny);
     parallelFor((grid.nx + kRowsAtOnce - 1) / kRowsAtOnce, [&](std::int64_t task) {
+        progress.throwIfInterrupted();
         std::vector<double> line(rows);
         const auto end =
             static_cast<std::size_t>(std::min<std::int64_t>(grid.nx, (task + 1) * kRowsAtOnce));

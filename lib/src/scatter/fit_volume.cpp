@@ -87,9 +87,10 @@ int VolumeFitting::chooseLevel() {
     }
     constexpr double kReachInSpacings = 4;
     constexpr double kFarthestUnasked = 0.5;  // of the longest side, where points are few
-    mParts.reach = mOptions.reach ? *mOptions.reach / mParts.longest
-                                  : std::min(kFarthestUnasked,
-                                             kReachInSpacings * spacingOf(mParts.points(), level));
+    mParts.reach = mOptions.reach
+                       ? *mOptions.reach / mParts.longest
+                       : std::min(kFarthestUnasked,
+                                  kReachInSpacings * spacingOf(mParts.points(), level, mProgress));
     constexpr double kFarthest = 4;
     if (!(mParts.reach > 0 && mParts.reach <= kFarthest)) {
         throw Error(ErrorKind::Usage,
@@ -103,18 +104,18 @@ int VolumeFitting::chooseLevel() {
 }
 
 void VolumeFitting::makeNets(int level) {
-    mParts.occupied = std::make_unique<OccupiedCells>(mParts.points(), level);
+    mParts.occupied = std::make_unique<OccupiedCells>(mParts.points(), level, mProgress);
     const SpaceNet places = mParts.occupied->places();
     const double reach = std::min(std::ldexp(mParts.reach, level), SpaceNet::kMostReach);
-    mParts.near = places.dilated(reach, false);
-    mParts.sure = places.dilated(reach, true);
-    SpaceNet net = mParts.near.controlsOfCells();
+    mParts.near = places.dilated(reach, false, mProgress);
+    mParts.sure = places.dilated(reach, true, mProgress);
+    SpaceNet net = mParts.near.controlsOfCells(mProgress);
     // The vectors of a solution, of what precedes it, and of the columns.
     const double vectors = 12 + 2 * static_cast<double>(mValues.size());
     requireMemory(vectors * sizeof(double) * static_cast<double>(net.numbers()),
                   "the control points in reach of the points");
     mNumbers = net.numbers();
-    mNets = makeSpaceNets(std::move(net), level, 1);
+    mNets = makeSpaceNets(std::move(net), level, 1, mProgress);
 }
 
 /// What the nets lack of `wanted` at the points.
@@ -257,12 +258,12 @@ void VolumeFitting::takeRest(int level) {
         places.sort();
         // Points far from each other take whole blocks of control points each: bumps do it for
         // less.
-        SpaceNet finest = places.dilated(kReachOfRest, false).controlsOfCells();
+        SpaceNet finest = places.dilated(kReachOfRest, false, mProgress).controlsOfCells(mProgress);
         constexpr std::size_t kMostNumbers = std::size_t(1) << 21U;
         if (finest.numbers() > std::max(kMostNumbers, mNumbers)) break;
         constexpr int kLevelsBelow = 3;
         const SpaceNets nets =
-            makeSpaceNets(std::move(finest), level, std::max(1, level - kLevelsBelow));
+            makeSpaceNets(std::move(finest), level, std::max(1, level - kLevelsBelow), mProgress);
         const SpaceColumns wanted = mLacking;
         const double largest = mLargest, rms = mRms;
         mControl.assign(mValues.size(), std::vector<double>(nets.nets.back().numbers()));
@@ -283,7 +284,8 @@ void VolumeFitting::takeBumps() {
     constexpr double kCrowded = 32;
     int level = mParts.occupied->level();
     while (level < SortedSpacePoints::kFinest &&
-           sharedCells(mParts.points(), OccupiedCells(mParts.points(), level)) > 0.5 * count) {
+           sharedCells(mParts.points(), OccupiedCells(mParts.points(), level, mProgress)) >
+               0.5 * count) {
         ++level;
     }
     // Those that are narrower still are for pairs of points.
@@ -361,6 +363,7 @@ VolumeFit fitVolume(const ScatteredPoints& points, const FitVolumeOptions& optio
     if (merged.points.size() == 0) {
         throw Error(ErrorKind::Input, "there are no points; expected some");
     }
+    progress.throwIfInterrupted();
     SpaceColumns values;
     SplineVolumeParts parts = makeUnitVolume(merged, values);
     VolumeFitting fitting(std::move(parts), std::move(values), options, progress);

@@ -48,9 +48,11 @@ std::size_t countOccupied(const SortedSpacePoints& points, int level) {
     return count;
 }
 
-OccupiedCells::OccupiedCells(const SortedSpacePoints& points, int level)
+OccupiedCells::OccupiedCells(const SortedSpacePoints& points, int level, const Progress& progress)
     : mPoints(points), mLevel(level) {
+    constexpr std::size_t kBetweenLooks = std::size_t(1) << 16U;
     for (std::size_t begin = 0; begin < points.size();) {
+        if (mInOrder.size() % kBetweenLooks == 0) progress.throwIfInterrupted();
         const SpaceNet::Place cell = points.cell(begin, level);
         std::size_t end = begin + 1;
         while (end < points.size() && points.cell(end, level) == cell) ++end;

@@ -106,9 +106,10 @@ void SpaceNet::sort() {
     }
 }
 
-SpaceNet SpaceNet::controlsOfCells() const {
+SpaceNet SpaceNet::controlsOfCells(const Progress& progress) const {
     SpaceNet result;
     for (std::size_t block = 0; block < mBlocks.size(); ++block) {
+        progress.throwIfInterrupted();
         const Place from = placeOf(block);
         for (int i = 0; i < 64; ++i) {
             const unsigned row = mBlocks[block].rows[static_cast<std::size_t>(i)];
@@ -126,13 +127,14 @@ SpaceNet SpaceNet::controlsOfCells() const {
     return result;
 }
 
-SpaceNet SpaceNet::parents() const {
+SpaceNet SpaceNet::parents(const Progress& progress) const {
     SpaceNet result;
     // Along an axis: (i + 3) / 2, (i + 1) / 2, (i - 1) / 2 of an odd one, and (i + 2) / 2, i / 2 of
     // an even one.
     const auto first = [](int i) { return (i - (i & 1)) >> 1; };
     const auto last = [](int i) { return ((i - (i & 1)) >> 1) + 1 + (i & 1); };
     for (std::size_t block = 0; block < mBlocks.size(); ++block) {
+        progress.throwIfInterrupted();
         const Place from = placeOf(block);
         for (int i = 0; i < 64; ++i) {
             const unsigned row = mBlocks[block].rows[static_cast<std::size_t>(i)];
@@ -158,7 +160,7 @@ SpaceNet SpaceNet::parents() const {
     return result;
 }
 
-SpaceNet SpaceNet::dilated(double reach, bool surely) const {
+SpaceNet SpaceNet::dilated(double reach, bool surely, const Progress& progress) const {
     SpaceNet result;
     const auto gap = [&](int d) {
         return static_cast<double>(surely ? std::abs(d) + 1 : std::max(std::abs(d) - 1, 0));
@@ -177,6 +179,7 @@ SpaceNet SpaceNet::dilated(double reach, bool surely) const {
         }
     }
     for (std::size_t block = 0; block < mBlocks.size(); ++block) {
+        progress.throwIfInterrupted();
         const Place from = placeOf(block);
         for (int i = 0; i < 64; ++i) {
             const unsigned row = mBlocks[block].rows[static_cast<std::size_t>(i)];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bandvox/core/parallel.h>
+#include <bandvox/core/progress.h>
 
 #include <algorithm>
 #include <array>
@@ -50,14 +51,14 @@ class SpaceNet {
     void sort();
 
     /// The control points that count in these cells.
-    SpaceNet controlsOfCells() const;
+    SpaceNet controlsOfCells(const Progress& progress = silentProgress()) const;
 
     /// The control points of a net with cells twice as wide that are needed for these.
-    SpaceNet parents() const;
+    SpaceNet parents(const Progress& progress = silentProgress()) const;
 
     /// All places not farther than `reach` cells from one of these: boxes of the cells at their
     /// nearest, or where `surely`, at their farthest. `reach`: 0 to kMostReach.
-    SpaceNet dilated(double reach, bool surely) const;
+    SpaceNet dilated(double reach, bool surely, const Progress& progress = silentProgress()) const;
     static constexpr double kMostReach = 22;
 
     /// Copies a cube of numbers, [x][y][z], from `from` on; `row` numbers lie between its rows

@@ -2,6 +2,8 @@
 
 #include "scatter/space_net.h"
 
+#include <bandvox/core/progress.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -34,7 +36,8 @@ SortedSpacePoints sortSpacePoints(std::vector<std::array<double, 3>> at,
 /// The cells of a level that hold points, and which.
 class OccupiedCells {
   public:
-    OccupiedCells(const SortedSpacePoints& points, int level);
+    OccupiedCells(const SortedSpacePoints& points, int level,
+                  const Progress& progress = silentProgress());
 
     int level() const { return mLevel; }
     /// The points of a cell: from the first index to before the second.

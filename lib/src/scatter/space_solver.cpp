@@ -24,11 +24,11 @@ double factorOfStiffness(int level, double tension, double stiffness) {
 
 }  // namespace
 
-SpaceNets makeSpaceNets(SpaceNet finest, int level, int coarsest) {
+SpaceNets makeSpaceNets(SpaceNet finest, int level, int coarsest, const Progress& progress) {
     SpaceNets result;
     result.finest = level;
     result.nets.push_back(std::move(finest));
-    for (; level > coarsest; --level) result.nets.push_back(result.nets.back().parents());
+    for (; level > coarsest; --level) result.nets.push_back(result.nets.back().parents(progress));
     std::reverse(result.nets.begin(), result.nets.end());
     return result;
 }

@@ -21,7 +21,8 @@ struct SpaceNets {
     }
 };
 
-SpaceNets makeSpaceNets(SpaceNet finest, int level, int coarsest);
+SpaceNets makeSpaceNets(SpaceNet finest, int level, int coarsest,
+                        const Progress& progress = silentProgress());
 
 /// Solves (A^T W A + E) c = b on a sparse net by conjugate gradients. What precedes a step is the
 /// sum over the levels of each diagonal's inverse, which takes about as many steps for every size.

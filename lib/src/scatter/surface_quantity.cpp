@@ -72,9 +72,10 @@ int numbersOf(SurfaceQuantity quantity) {
 
 std::vector<std::vector<double>> sampleQuantity(const BsplineSurface& surface,
                                                 std::array<int, 2> samples, int column,
-                                                SurfaceQuantity quantity) {
+                                                SurfaceQuantity quantity,
+                                                const Progress& progress) {
     const auto derivative = [&](int dx, int dy) {
-        return surface.sample({samples[0], samples[1], column, dx, dy});
+        return surface.sample({samples[0], samples[1], column, dx, dy}, progress);
     };
     const bool isNormal = quantity == SurfaceQuantity::Normal;
     const bool isCurvature = quantity == SurfaceQuantity::GaussianCurvature ||
@@ -92,7 +93,9 @@ std::vector<std::vector<double>> sampleQuantity(const BsplineSurface& surface,
     }
     const std::size_t count = jets.dx.size();
     result.assign(static_cast<std::size_t>(numbersOf(quantity)), std::vector<double>(count));
+    constexpr std::size_t kBetweenLooks = std::size_t(1) << 20U;
     for (std::size_t i = 0; i < count; ++i) {
+        if (i % kBetweenLooks == 0) progress.throwIfInterrupted();
         const SurfaceJet jet = jets.at(i);
         if (isNormal) {
             const auto normal = jet.normal();

@@ -50,10 +50,10 @@ SplineVolumeParts makeUnitVolume(const MergedPoints& merged, SpaceColumns& colum
     return parts;
 }
 
-double spacingOf(const SortedSpacePoints& points, int level) {
+double spacingOf(const SortedSpacePoints& points, int level, const Progress& progress) {
     constexpr std::size_t kMostAsked = 20000;
     constexpr double kMost = 0.9;
-    const OccupiedCells cells(points, level);
+    const OccupiedCells cells(points, level, progress);
     const std::size_t count = std::min(points.size(), kMostAsked);
     std::vector<double> nearest(count);
     parallelFor(static_cast<std::int64_t>(count), [&](std::int64_t k) {

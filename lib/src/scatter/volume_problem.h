@@ -22,6 +22,7 @@ SplineVolumeParts makeUnitVolume(const MergedPoints& merged, SpaceColumns& colum
 
 /// The distance within which most points have another one, in units of the box. `level`: of cells
 /// with about a point each.
-double spacingOf(const SortedSpacePoints& points, int level);
+double spacingOf(const SortedSpacePoints& points, int level,
+                 const Progress& progress = silentProgress());
 
 }  // namespace bandvox

@@ -31,13 +31,15 @@ struct SampledField {
     std::vector<double> height, dx, dy;
     std::array<std::vector<double>, 3> color;  // empty without
 
-    SampledField(const BsplineSurface& surface, std::array<int, 2> samples, int column, int red)
+    SampledField(const BsplineSurface& surface, std::array<int, 2> samples, int column, int red,
+                 const Progress& progress)
         : size(samples),
-          height(surface.sample({samples[0], samples[1], column})),
-          dx(surface.sample({samples[0], samples[1], column, 1, 0})),
-          dy(surface.sample({samples[0], samples[1], column, 0, 1})) {
+          height(surface.sample({samples[0], samples[1], column}, progress)),
+          dx(surface.sample({samples[0], samples[1], column, 1, 0}, progress)),
+          dy(surface.sample({samples[0], samples[1], column, 0, 1}, progress)) {
         for (int c = 0; red >= 0 && c < 3; ++c) {
-            color[static_cast<std::size_t>(c)] = surface.sample({samples[0], samples[1], red + c});
+            color[static_cast<std::size_t>(c)] =
+                surface.sample({samples[0], samples[1], red + c}, progress);
         }
     }
 
@@ -128,7 +130,7 @@ void writeSamples(AtomicFile& file, const BsplineSurface& surface, std::array<in
     std::vector<std::vector<double>> columns;
     for (int c = 0; c < surface.columns(); ++c) {
         for (const SurfaceQuantity quantity : quantities) {
-            for (auto& made : sampleQuantity(surface, samples, c, quantity)) {
+            for (auto& made : sampleQuantity(surface, samples, c, quantity, progress)) {
                 columns.push_back(std::move(made));
             }
         }
@@ -146,11 +148,12 @@ void writeSamples(AtomicFile& file, const BsplineSurface& surface, std::array<in
 }
 
 SurfaceMesh heightFieldMesh(const BsplineSurface& surface, std::array<int, 2> samples, int column,
-                            int red) {
-    const SampledField field(surface, samples, column, red);
+                            int red, const Progress& progress) {
+    const SampledField field(surface, samples, column, red, progress);
     const Rectangle& r = surface.rectangle();
     SurfaceMesh result;
     for (int i = 0; i < samples[0]; ++i) {
+        progress.throwIfInterrupted();
         for (int j = 0; j < samples[1]; ++j) {
             const std::size_t at = result.mesh.points.size();
             result.mesh.points.emplace_back(along(r.x0, r.x1, i, samples[0]),
@@ -169,13 +172,15 @@ SurfaceMesh heightFieldMesh(const BsplineSurface& surface, std::array<int, 2> sa
 }
 
 Image heightFieldImage(const BsplineSurface& surface, std::array<int, 2> samples, int column,
-                       int red, const std::vector<SurfaceQuantity>& quantities) {
-    const SampledField field(surface, samples, column, red);
+                       int red, const std::vector<SurfaceQuantity>& quantities,
+                       const Progress& progress) {
+    const SampledField field(surface, samples, column, red, progress);
     const Rectangle& r = surface.rectangle();
     Image image;
     image.width = samples[0];
     image.height = samples[1];
     for (int row = 0; row < samples[1]; ++row) {
+        progress.throwIfInterrupted();
         const int j = samples[1] - 1 - row;
         for (int i = 0; i < samples[0]; ++i) {
             const auto at = static_cast<std::size_t>(i) * static_cast<std::size_t>(samples[1]) +
@@ -192,7 +197,7 @@ Image heightFieldImage(const BsplineSurface& surface, std::array<int, 2> samples
         }
     }
     for (const SurfaceQuantity quantity : quantities) {
-        appendPlanes(image, sampleQuantity(surface, samples, column, quantity), quantity);
+        appendPlanes(image, sampleQuantity(surface, samples, column, quantity, progress), quantity);
     }
     return image;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <bandvox/core/progress.h>
+
 #include <array>
 #include <cstddef>
 #include <span>
@@ -67,7 +69,8 @@ class BsplineSurface {
     SurfaceJet jet(double x, double y, int column = 0) const;
 
     /// Samples on a grid, [x][y]. Throws Error(ErrorKind::Usage) if it is none.
-    std::vector<double> sample(const GridSampling& grid) const;
+    std::vector<double> sample(const GridSampling& grid,
+                               const Progress& progress = silentProgress()) const;
 
     /// The same surface with cells half as wide along the axes that are asked for: exact but for
     /// rounding.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bandvox/core/progress.h>
 #include <bandvox/scatter/bspline_surface.h>
 
 #include <array>
@@ -39,6 +40,7 @@ int numbersOf(SurfaceQuantity quantity);
 /// numbers [x][y]. Throws Error(ErrorKind::Usage) if it is no grid, or there is no such column.
 std::vector<std::vector<double>> sampleQuantity(const BsplineSurface& surface,
                                                 std::array<int, 2> samples, int column,
-                                                SurfaceQuantity quantity);
+                                                SurfaceQuantity quantity,
+                                                const Progress& progress = silentProgress());
 
 }  // namespace bandvox

@@ -27,11 +27,13 @@ void writeSamples(AtomicFile& file, const BsplineSurface& surface, std::array<in
 /// The height field of a column as two triangles to each cell of a grid of samples, with the
 /// spline's normals. `red`: the first of three columns that are colours, linear light, or -1.
 SurfaceMesh heightFieldMesh(const BsplineSurface& surface, std::array<int, 2> samples,
-                            int column = 0, int red = -1);
+                            int column = 0, int red = -1,
+                            const Progress& progress = silentProgress());
 
 /// The same as a picture seen from above, x to the right and y up: depth is the height, and normals
 /// and positions are the surface's. `quantities` of the column are channels of their names.
 Image heightFieldImage(const BsplineSurface& surface, std::array<int, 2> samples, int column = 0,
-                       int red = -1, const std::vector<SurfaceQuantity>& quantities = {});
+                       int red = -1, const std::vector<SurfaceQuantity>& quantities = {},
+                       const Progress& progress = silentProgress());
 
 }  // namespace bandvox
