@@ -76,8 +76,8 @@ int main(int count, char** arguments) {
         }
         std::sort(totals.seconds.begin(), totals.seconds.end());
         std::printf(
-            "%s: %zu views, %d of %d ends loose, %d of %d samples wrong, %d counted wrong, %.4f mm "
-            "off, %zu visible anchors at most, median %.3f s\n",
+            "%s: %zu views, %d of %d ends loose, %d of %d samples wrong, %d "
+            "counted wrong, %.4f mm off, %zu visible anchors at most, median %.3f s\n",
             scene.name.c_str(), totals.seconds.size(), totals.ends.wrong, totals.ends.samples,
             totals.sight.wrong, totals.sight.samples, totals.sight.miscounted, totals.apart,
             totals.mostAnchors, totals.seconds[totals.seconds.size() / 2]);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 namespace bandvox::outline_test {
@@ -48,6 +49,27 @@ TEST(Crossings, BehindALineThatEndsNoSurfaceAreNone) {
         expectPlaces(places[0], {});
         expectPlaces(places[1], {});
     }
+}
+
+TEST(Crossings, OfLinesOnASurfaceWithOneWhereItMeetsAnotherAreOnBoth) {
+    for (const OutlineKind kind :
+         {OutlineKind::Crease, OutlineKind::Intersection, OutlineKind::Isophote}) {
+        const std::vector<Curve> curves{
+            chainOf({{10, 20, 5}, {30, 20, 5}}, OutlineKind::Intersection),
+            chainOf({{15, 10, 5}, {15, 30, 5}}, kind)};
+        const auto places = placesOf(curves);
+        expectPlaces(places[0], {0.25});
+        expectPlaces(places[1], {0.5});
+    }
+}
+
+TEST(Crossings, AreFoundWhereACurveLeavesItsCuspUnevenly) {
+    const PlainScene scene([](double, double) { return SeenSurface(); }, 2);
+    const std::vector<Curve> curves{chainOf({{10, 20, 9}, {30, 20, 9}}),
+                                    chainOf({{28, 10, 5}, {28, 30, 5}})};
+    const auto places = crossings(curves, *scene.reader(), kPage);
+    ASSERT_EQ(places[0].size(), 1U);
+    EXPECT_NEAR(places[0][0], std::sqrt(0.9), 1e-6);
 }
 
 TEST(Crossings, OfACurveWithItselfAreFoundButForNeighbours) {

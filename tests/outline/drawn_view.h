@@ -74,32 +74,56 @@ inline bool isNearCorner(const DrawnView& drawn, const CurvePoint& p, double rea
     return false;
 }
 
+/// A piece, and how far each of its points is along it.
+class MeasuredPiece {
+  public:
+    MeasuredPiece(const DrawnView& drawn, const Curve& curve) : mDrawn(drawn), mCurve(curve) {
+        for (std::size_t i = 1; i < curve.points.size(); ++i) {
+            mLengths.push_back(mLengths.back() +
+                               std::hypot(curve.points[i].x - curve.points[i - 1].x,
+                                          curve.points[i].y - curve.points[i - 1].y));
+        }
+    }
+
+    double length() const { return mLengths.back(); }
+    CurvePoint at(double length) const {
+        const auto above = std::upper_bound(mLengths.begin(), mLengths.end(), length);
+        const auto i = std::clamp(static_cast<std::size_t>(above - mLengths.begin()),
+                                  std::size_t(1), mLengths.size() - 1);
+        const double step = mLengths[i] - mLengths[i - 1];
+        return pointBetween(mDrawn.seen, mCurve.points[i - 1], mCurve.points[i],
+                            step > 0 ? (length - mLengths[i - 1]) / step : 0);
+    }
+
+  private:
+    const DrawnView& mDrawn;
+    const Curve& mCurve;
+    std::vector<double> mLengths{0};
+};
+
+/// What lies before a place, by exact lines of sight. The curve's own surface is met, too: twice at
+/// a fold, and at depths that are as wrong as the root of what the place is.
+inline std::vector<double> depthsBefore(const DrawnView& drawn, const ExactSheets& oracle,
+                                        const CurvePoint& p, OutlineKind kind) {
+    const double margin = kind == OutlineKind::Contour ? 1.5e-7 : 1e-11;
+    return oracle.depthsBefore(p.x, p.y, p.z - margin * drawn.size);
+}
+
 inline Findings checkPiece(const DrawnView& drawn, const VisiblePiece& piece,
                            const ExactSheets& oracle) {
     const auto& [curve, hidden] = piece;
-    // The curve's own surface is met, too, twice at a fold.
-    const double margin = 1.5e-7 * drawn.size;
     Findings result;
-    double length = 0;
-    std::vector<double> lengths{0};
-    for (std::size_t i = 1; i < curve.points.size(); ++i) {
-        length += std::hypot(curve.points[i].x - curve.points[i - 1].x,
-                             curve.points[i].y - curve.points[i - 1].y);
-        lengths.push_back(length);
-    }
-    const double away = curve.closed ? 0 : 0.2 * drawn.pixel;
+    const MeasuredPiece measured(drawn, curve);
+    const double length = measured.length();
+    const double reach = 0.2 * drawn.pixel;
+    const double away = curve.closed ? 0 : reach;
     if (length <= 2 * away) return result;
     const int count = std::max(10, static_cast<int>(length / (5 * drawn.pixel)));
     for (int k = 0; k < count; ++k) {
         const double at = away + (length - 2 * away) * (k + 0.5) / count;
-        const auto above = std::upper_bound(lengths.begin(), lengths.end(), at);
-        const auto i =
-            std::min(static_cast<std::size_t>(above - lengths.begin()), lengths.size() - 1);
-        const double step = lengths[i] - lengths[i - 1];
-        const CurvePoint p = pointBetween(drawn.seen, curve.points[i - 1], curve.points[i],
-                                          step > 0 ? (at - lengths[i - 1]) / step : 0);
-        if (isNearCorner(drawn, p, 0.2 * drawn.pixel)) continue;
-        const auto depths = oracle.depthsBefore(p.x, p.y, p.z - margin);
+        const CurvePoint p = measured.at(at);
+        if (isNearCorner(drawn, p, reach)) continue;
+        const auto depths = depthsBefore(drawn, oracle, p, curve.kind);
         ++result.samples;
         if (static_cast<int>(depths.size()) != hidden) ++result.miscounted;
         if (depths.empty() == (hidden == 0)) continue;

@@ -12,21 +12,26 @@
 namespace bandvox::outline_test {
 
 /// A scene of curves that are their own chords, with a function for what is seen. A curve's point
-/// is on the side of a fold that the sign of its u tells.
+/// is on the side of a fold that the sign of its u tells. `pace`: of the share of a chord, the
+/// power that is the share of its length; 2 for one that begins at a cusp.
 class PlainScene final : public CurveScene {
   public:
     using Seen = std::function<SeenSurface(double x, double y)>;
-    explicit PlainScene(Seen seen = [](double, double) { return SeenSurface(); })
-        : mSeen(std::move(seen)) {}
+    explicit PlainScene(
+        Seen seen = [](double, double) { return SeenSurface(); }, double pace = 1)
+        : mSeen(std::move(seen)), mPace(pace) {}
 
-    std::unique_ptr<CurveReader> reader() const override { return std::make_unique<Reader>(mSeen); }
+    std::unique_ptr<CurveReader> reader() const override {
+        return std::make_unique<Reader>(mSeen, mPace);
+    }
 
   private:
     class Reader final : public CurveReader {
       public:
-        explicit Reader(const Seen& seen) : mSeen(seen) {}
+        Reader(const Seen& seen, double pace) : mSeen(seen), mPace(pace) {}
 
-        CurvePoint between(const CurvePoint& a, const CurvePoint& b, double share) override {
+        CurvePoint between(const CurvePoint& a, const CurvePoint& b, double along) override {
+            const double share = std::pow(along, mPace);
             CurvePoint p = a;
             p.x += share * (b.x - a.x);
             p.y += share * (b.y - a.y);
@@ -42,9 +47,11 @@ class PlainScene final : public CurveScene {
 
       private:
         const Seen& mSeen;
+        double mPace;
     };
 
     Seen mSeen;
+    double mPace;
 };
 
 /// A curve through places x, y, z of the page; a closed one if the last place is the first.

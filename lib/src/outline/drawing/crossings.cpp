@@ -19,6 +19,12 @@ bool occludes(const Curve& curve) {
     return curve.kind == OutlineKind::Contour || curve.kind == OutlineKind::Boundary;
 }
 
+// Where such a curve meets one of a surface that it lies on, the other one passes through a
+// surface.
+bool passesThrough(const Curve& curve) {
+    return curve.kind == OutlineKind::Intersection;
+}
+
 // A curve that a fold of its surface may pass.
 bool liesOnSurface(const Curve& curve) {
     return curve.kind == OutlineKind::Intersection || curve.kind == OutlineKind::Isophote;
@@ -67,7 +73,9 @@ class CrossingSearch {
     void cross(const CurveSegment& a, const CurveSegment& b) {
         const Curve& first = mCurves[a.curve];
         const Curve& second = mCurves[b.curve];
-        if ((!occludes(first) && !occludes(second)) || areNeighbours(a, b)) return;
+        const bool mayPassThrough = passesThrough(first) || passesThrough(second);
+        if (!occludes(first) && !occludes(second) && !mayPassThrough) return;
+        if (areNeighbours(a, b)) return;
         const CurvePoint &p = mGrid.start(a), &q = mGrid.end(a);
         const CurvePoint &r = mGrid.start(b), &s = mGrid.end(b);
         const double ax = q.x - p.x, ay = q.y - p.y, bx = s.x - r.x, by = s.y - r.y;
@@ -76,9 +84,15 @@ class CrossingSearch {
         const double alongA = ((r.x - p.x) * by - (r.y - p.y) * bx) / area;
         const double alongB = ((r.x - p.x) * ay - (r.y - p.y) * ax) / area;
         if (alongA < 0 || alongA > 1 || alongB < 0 || alongB > 1) return;
-        Spot onA{a, alongA, {}}, onB{b, alongB, {}};
+        Spot onA{.segment = a, .share = alongA, .at = {}},
+            onB{.segment = b, .share = alongB, .at = {}};
         if (!settle(onA, onB) || areNeighbours(onA.segment, onB.segment)) return;
         const double near = kSameDepth * mSize;
+        if (mayPassThrough && std::abs(onA.at.z - onB.at.z) < near) {
+            mPlaces[a.curve].push_back(onA.place());
+            mPlaces[b.curve].push_back(onB.place());
+            return;
+        }
         if (occludes(second) && onB.at.z < onA.at.z + near) mPlaces[a.curve].push_back(onA.place());
         if (occludes(first) && onA.at.z < onB.at.z + near) mPlaces[b.curve].push_back(onB.place());
     }
@@ -91,23 +105,37 @@ class CrossingSearch {
         return {&mGrid.start(segment), &mGrid.end(segment)};
     }
 
-    // A place of a curve.
+    // A place of a curve, and how fast it moves there with the share of the segment.
     struct Spot {
         CurveSegment segment;
         double share;
         CurvePoint at;
+        double dx = 0, dy = 0;
 
         double place() const { return segment.index + share; }
     };
 
     void read(Spot& spot) const {
-        const Ends ends = endsOf(spot.segment);
-        spot.at = mReader.between(*ends.from, *ends.to, spot.share);
+        const auto [from, to] = endsOf(spot.segment);
+        spot.at = mReader.between(*from, *to, spot.share);
+        spot.dx = to->x - from->x;
+        spot.dy = to->y - from->y;
     }
 
     // Along the curve; from one segment no farther than into the next.
     void move(Spot& spot, double by) const {
-        const double share = spot.share + by;
+        const Spot before = spot;
+        moveShare(spot, before.share + by);
+        read(spot);
+        const double moved = spot.share - before.share;
+        constexpr double kLeast = 1e-9;
+        if (spot.segment.index != before.segment.index || std::abs(moved) < kLeast) return;
+        // Near a cusp a curve is much slower at one end of a segment than at the other.
+        spot.dx = (spot.at.x - before.at.x) / moved;
+        spot.dy = (spot.at.y - before.at.y) / moved;
+    }
+
+    void moveShare(Spot& spot, double share) const {
         const auto count = static_cast<std::uint32_t>(mCurves[spot.segment.curve].points.size());
         const bool isClosed = mCurves[spot.segment.curve].closed;
         std::uint32_t& index = spot.segment.index;
@@ -125,21 +153,18 @@ class CrossingSearch {
     // they do not cross there.
     bool settle(Spot& a, Spot& b) const {
         double away = 0;
-        for (int round = 0; round < 12; ++round) {
-            read(a);
-            read(b);
+        read(a);
+        read(b);
+        for (int round = 0; round < 16; ++round) {
             const double gx = b.at.x - a.at.x, gy = b.at.y - a.at.y;
             away = std::hypot(gx, gy);
             if (away < 1e-3 * mFlatness) return true;
-            const Ends chordA = endsOf(a.segment), chordB = endsOf(b.segment);
-            const double ax = chordA.to->x - chordA.from->x, ay = chordA.to->y - chordA.from->y;
-            const double bx = chordB.to->x - chordB.from->x, by = chordB.to->y - chordB.from->y;
-            const double area = ax * by - ay * bx;
+            const double area = a.dx * b.dy - a.dy * b.dx;
             if (area == 0) break;
-            // Parameters go along chords nearly evenly: each round leaves a small part of the
-            // error.
-            move(a, (gx * by - gy * bx) / area);
-            move(b, (gx * ay - gy * ax) / area);
+            const double byA = (gx * b.dy - gy * b.dx) / area;
+            const double byB = (gx * a.dy - gy * a.dx) / area;
+            move(a, byA);
+            move(b, byB);
         }
         return away < 2 * mFlatness;
     }

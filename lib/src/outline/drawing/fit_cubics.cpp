@@ -142,20 +142,33 @@ FittedCubic fitOne(const SmoothRun& run, std::size_t first, std::size_t last, do
     return best;
 }
 
-// Whether all points between are near, not only those that were fitted.
+double distanceFromChord(const Place& place, const Place& a, const Place& b) {
+    const Place chord = b - a;
+    const double square = dot(chord, chord);
+    const double share = square > 0 ? std::clamp(dot(place - a, chord) / square, 0.0, 1.0) : 0;
+    return lengthOf(place - (a + share * chord));
+}
+
+// Whether all points between are near, not only those that were fitted, and the cubic does not
+// leave their chords, by `bulge` at most.
 bool isNearAll(const SmoothRun& run, std::size_t first, std::size_t last, const Cubic& cubic,
-               double tolerance) {
+               double tolerance, double bulge) {
     const double whole = run.lengths[last] - run.lengths[first];
-    for (std::size_t i = first + 1; i < last; ++i) {
+    double before = 0;
+    for (std::size_t i = first + 1; i <= last; ++i) {
         double t = (run.lengths[i] - run.lengths[first]) / whole;
-        for (int step = 0; step < 4; ++step) t = projected(cubic, run.points[i], t);
+        for (int step = 0; step < 4 && i < last; ++step) t = projected(cubic, run.points[i], t);
         if (lengthOf(cubic.at(t) - run.points[i]) > tolerance) return false;
+        const Place between = cubic.at(0.5 * (before + t));
+        if (distanceFromChord(between, run.points[i - 1], run.points[i]) > bulge) return false;
+        before = t;
     }
     return true;
 }
 
 // As long as possible, one after the other; gives up beyond `most` cubics.
-std::vector<Cubic> fitGreedily(const SmoothRun& run, double tolerance, std::size_t most) {
+std::vector<Cubic> fitGreedily(const SmoothRun& run, double tolerance, double bulge,
+                               std::size_t most) {
     std::vector<Cubic> cubics;
     const std::size_t end = run.points.size() - 1;
     std::size_t guess = end;
@@ -168,7 +181,7 @@ std::vector<Cubic> fitGreedily(const SmoothRun& run, double tolerance, std::size
             if (trial <= good || trial >= bad) trial = (good + bad) / 2;
             const FittedCubic fitted = fitOne(run, first, trial, tolerance);
             const bool isGood = fitted.error <= tolerance &&
-                                isNearAll(run, first, trial, fitted.cubic, 1.02 * tolerance);
+                                isNearAll(run, first, trial, fitted.cubic, 1.02 * tolerance, bulge);
             if (isGood) {
                 good = trial;
                 best = fitted;
@@ -188,13 +201,13 @@ std::vector<Cubic> fitGreedily(const SmoothRun& run, double tolerance, std::size
 }
 
 // The fewest cubics, then the smallest tolerance that does not need more.
-std::vector<Cubic> fitRun(const SmoothRun& run, double tolerance) {
-    std::vector<Cubic> best = fitGreedily(run, tolerance, run.points.size());
+std::vector<Cubic> fitRun(const SmoothRun& run, double tolerance, double bulge) {
+    std::vector<Cubic> best = fitGreedily(run, tolerance, bulge, run.points.size());
     if (best.size() == 1) return best;
     double low = 0.1 * tolerance, high = tolerance;
     for (int step = 0; step < 3; ++step) {
         const double middle = std::sqrt(low * high);
-        std::vector<Cubic> tighter = fitGreedily(run, middle, best.size());
+        std::vector<Cubic> tighter = fitGreedily(run, middle, bulge, best.size());
         if (tighter.empty()) {
             low = middle;
         } else {
@@ -296,7 +309,7 @@ std::vector<CurvePoint> fromCorner(const Curve& curve) {
 
 std::vector<std::array<double, 2>> fitCubics(const Curve& curve, double tolerance) {
     // What is not seen between points is little.
-    constexpr double kShare = 0.75, kGap = 100;
+    constexpr double kShare = 0.75, kShareOfBulge = 0.8, kGap = 100;
     const double least = kShare * tolerance;
     const std::vector<CurvePoint> points = fromCorner(curve);
     std::vector<std::array<double, 2>> path;
@@ -311,7 +324,7 @@ std::vector<std::array<double, 2>> fitCubics(const Curve& curve, double toleranc
             curve.closed && path.empty() && i + 1 == points.size() && !points.front().corner;
         // The end of a smooth loop is its start.
         if (isLoop) run.directions.back() = run.directions.front();
-        for (const Cubic& cubic : fitRun(run, least)) {
+        for (const Cubic& cubic : fitRun(run, least, kShareOfBulge * tolerance)) {
             if (path.empty()) path.push_back(cubic.p[0]);
             path.insert(path.end(), cubic.p.begin() + 1, cubic.p.end());
         }
