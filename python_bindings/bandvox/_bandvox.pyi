@@ -426,7 +426,7 @@ def merge(
     progress: Optional[Progress] = None,
 ) -> Grid: ...
 def outline(
-    source: Union[Path, Patches, Grid, Sequence[Union[Path, Patches, Grid]]],
+    source: Union[Path, Patches, Grid, MaskGrid, Sequence[Union[Path, Patches, Grid, MaskGrid]]],
     *,
     page: Union[Sequence[float], str] = [200.0, 150.0],
     margin: Optional[float] = None,

@@ -25,6 +25,10 @@ bool isNumeric(const py::array& array) {
 }  // namespace
 
 py::array anyArray(const py::handle& object, const char* what, const std::string& expected) {
+    // What is masked has values still, which nobody means.
+    const bool isMasked = py::hasattr(object, "mask") &&
+                          py::module_::import("numpy.ma").attr("is_masked")(object).cast<bool>();
+    if (isMasked) refuse(what, "masked values", expected + ", as filled() makes them");
     py::array array = py::array::ensure(object);
     if (!array) {
         PyErr_Clear();

@@ -8,6 +8,7 @@
 #include "grid_object.h"
 #include "mesh_object.h"
 #include "patches_object.h"
+#include "paths.h"
 #include "solid_density.h"
 #include "solid_mesh.h"
 
@@ -204,7 +205,7 @@ py::object ofFunction(const py::object& function, const BandlimitRequest& reques
 
 py::object bandlimit(const py::object& source, const BandlimitRequest& request) {
     if (isPath(source)) {
-        const auto path = source.cast<std::filesystem::path>();
+        const auto path = pathOf(source);
         if (isShape(path.string())) return ofShape(path.string(), request);
         return ofFile(path, request);
     }

@@ -6,6 +6,7 @@
 #include "errors.h"
 #include "grid_object.h"
 #include "iso_argument.h"
+#include "paths.h"
 #include "solid_mesh.h"
 
 #include <bandvox/compare/compare_grids.h>
@@ -54,7 +55,7 @@ struct Comparison {
 Side sideOf(const py::object& object) {
     Side side;
     if (isPath(object)) {
-        side.path = object.cast<std::filesystem::path>();
+        side.path = pathOf(object);
     } else if (const auto mesh = meshOf(object)) {
         side.mesh = mesh;
     } else {

@@ -131,11 +131,11 @@ py::tuple toArray(const GridObject<Grid>& object, const py::object& bounds) {
     return py::make_tuple(array, tupleOf(box.min()));
 }
 
-/// Throws Error(ErrorKind::Usage), which says where, if there is one that is not a number.
+/// Throws Error(ErrorKind::Usage), which says where, if there is one that is not finite.
 void requireNumbers(const py::array_t<float>& values) {
     const float* first = values.data();
     const float* const end = first + values.size();
-    const float* const found = std::find_if(first, end, [](float x) { return std::isnan(x); });
+    const float* const found = std::find_if(first, end, [](float x) { return !std::isfinite(x); });
     if (found == end) return;
     auto left = static_cast<py::ssize_t>(found - first);
     std::string place;
@@ -143,8 +143,11 @@ void requireNumbers(const py::array_t<float>& values) {
         place = std::to_string(left % values.shape(axis)) + (place.empty() ? "" : ", ") + place;
         left /= values.shape(axis);
     }
-    throw Error(ErrorKind::Usage, "array: found nan at [" + place +
-                                      "]; expected numbers, as numpy.nan_to_num makes them");
+    const std::string isWhat = std::isnan(*found) ? "nan" : "a number beyond those of float32";
+    throw Error(ErrorKind::Usage,
+                "array: found " + isWhat + " at [" + place +
+                    "]; expected finite numbers of float32, as numpy.nan_to_num and numpy.clip "
+                    "make them");
 }
 
 /// A grid of an array: what differs from the background by no more than the tolerance is not kept.
@@ -168,7 +171,7 @@ std::shared_ptr<GridObject<Grid>> fromArray(const py::object& array, const py::o
         throw Error(ErrorKind::Usage,
                     "array: found " + described(given) + "; expected " + expected);
     }
-    if (!(tolerance >= 0) || !std::isfinite(background)) {
+    if (!(tolerance >= 0) || !std::isfinite(static_cast<float>(background))) {
         throw Error(ErrorKind::Usage, "found the tolerance " + std::to_string(tolerance) +
                                           " and the background " + std::to_string(background) +
                                           "; expected a tolerance of 0 or more, and a background "

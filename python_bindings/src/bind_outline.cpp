@@ -9,8 +9,8 @@
 #include "grid_object.h"
 #include "iso_argument.h"
 #include "patches_object.h"
+#include "paths.h"
 #include "solid_density.h"
-#include "solid_mesh.h"
 
 #include <bandvox/core/atomic_file.h>
 #include <bandvox/outline/patches_to_outline.h>
@@ -222,11 +222,11 @@ void addFile(const std::filesystem::path& file, DrawnSources& sources) {
 void addSource(const py::handle& source, DrawnSources& sources) {
     if (py::isinstance<PatchesObject>(source)) {
         sources.patches.append(source.cast<const PatchesObject&>().model);
-    } else if (py::isinstance<FloatGridObject>(source)) {
-        const auto& grid = source.cast<const FloatGridObject&>().grid;
+    } else if (py::isinstance<FloatGridObject>(source) || py::isinstance<MaskGridObject>(source)) {
+        const openvdb::FloatGrid::Ptr grid = floatGridOf(source);
         sources.volumes.push_back({grid, {}, grid->getName()});
-    } else if (isPath(py::reinterpret_borrow<py::object>(source))) {
-        addFile(source.cast<std::filesystem::path>(), sources);
+    } else if (isPath(source)) {
+        addFile(pathOf(source), sources);
     } else {
         throw Error(ErrorKind::Usage, std::string("found a ") + Py_TYPE(source.ptr())->tp_name +
                                           "; expected a file, 'shape:NAME', bandvox.Patches, a "

@@ -5,6 +5,7 @@
 #include "bindings.h"
 #include "choices.h"
 #include "density_request.h"
+#include "paths.h"
 #include "scattered_arrays.h"
 #include "solid_mesh.h"
 
@@ -182,7 +183,7 @@ void bindPoints(py::module_& module) {
             request.kind =
                 static_cast<PointKind>(choiceOf(points, {"auto", "balls", "surface"}, "points"));
             if (isPath(source)) {
-                request.path = source.cast<std::filesystem::path>();
+                request.path = pathOf(source);
             } else {
                 request.cloud.points = finiteVectorsOf(source, "points");
             }

@@ -5,6 +5,7 @@
 #include "errors.h"
 #include "grid_object.h"
 #include "patches_object.h"
+#include "paths.h"
 #include "solid_mesh.h"
 
 #include <bandvox/core/atomic_file.h>
@@ -58,7 +59,7 @@ Json fileReport(const std::filesystem::path& path, Progress& progress) {
 
 py::object info(const py::object& source, int threads, const py::object& progress) {
     if (isPath(source)) {
-        const auto path = source.cast<std::filesystem::path>();
+        const auto path = pathOf(source);
         return objectOf(inBackground(progress, threads,
                                      [&](Progress& watched) { return fileReport(path, watched); }));
     }

@@ -7,6 +7,7 @@
 #include "choices.h"
 #include "errors.h"
 #include "grid_object.h"
+#include "paths.h"
 #include "solid_mesh.h"
 #include "surface_object.h"
 
@@ -92,7 +93,7 @@ VoxelResult voxelsOf(const py::object& source, const VoxelRequest& request,
         });
     }
     const bool isFile = isPath(source);
-    const auto path = isFile ? source.cast<std::filesystem::path>() : std::filesystem::path();
+    const auto path = isFile ? pathOf(source) : std::filesystem::path();
     if (isFile && !isShape(path.string())) {
         return work([&](Progress& progress) {
             MeshFile file = readMesh(path, progress);
@@ -156,7 +157,7 @@ py::object colorsFor(const py::object& source, const py::object& density, double
     options.filter = ExponentialFilter{order, cutoff};
     options.tile = tile;
     const bool isFile = isPath(source);
-    const auto path = isFile ? source.cast<std::filesystem::path>() : std::filesystem::path();
+    const auto path = isFile ? pathOf(source) : std::filesystem::path();
     const auto surface =
         py::isinstance<SurfaceObject>(source) ? source.cast<SharedSurface>() : nullptr;
     const auto mesh = isFile || surface ? nullptr : meshOf(source);

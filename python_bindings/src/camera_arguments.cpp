@@ -2,6 +2,7 @@
 
 #include "arrays.h"
 #include "choices.h"
+#include "paths.h"
 
 #include <gltf_camera.h>
 #include <pybind11/stl.h>
@@ -21,7 +22,7 @@ std::optional<openvdb::Vec3d> optionalVectorOf(const pybind11::handle& object, c
 CameraOptions cameraOf(const CameraArguments& arguments, double aspect) {
     CameraOptions options;
     if (!arguments.file.is_none()) {
-        const auto file = arguments.file.cast<std::filesystem::path>();
+        const auto file = pathOf(arguments.file);
         options = app::readGltfCamera(file.string(), aspect);
     }
     if (const auto eye = optionalVectorOf(arguments.eye, "eye")) options.eye = eye;

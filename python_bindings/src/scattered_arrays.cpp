@@ -2,7 +2,7 @@
 
 #include "arrays.h"
 #include "errors.h"
-#include "solid_mesh.h"
+#include "paths.h"
 
 #include <bandvox/core/error.h>
 
@@ -59,7 +59,7 @@ ScatteredInput::ScatteredInput(const py::object& places, const py::object& value
                                           std::to_string(dimensions) + ") and their values");
     }
     if (isFile) {
-        mPath = places.cast<std::filesystem::path>();
+        mPath = pathOf(places);
     } else {
         mPoints = scatteredOf(places, values, dimensions);
     }

@@ -4,6 +4,7 @@
 #include "camera_arguments.h"
 #include "choices.h"
 #include "grid_object.h"
+#include "paths.h"
 #include "settings.h"
 
 #include <bandvox/render/placement.h>
@@ -79,7 +80,7 @@ Light lightOf(const Settings& settings) {
 Environment environmentOf(const Settings& settings) {
     Environment environment;
     if (settings.isGiven("file")) {
-        const auto file = settings.at("file").cast<std::filesystem::path>();
+        const auto file = pathOf(settings.at("file"));
         const double turn = settings.number("turn");
         const py::gil_scoped_release unlocked;
         environment.map = readEnvironmentMap(file, turn);

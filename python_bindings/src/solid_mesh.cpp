@@ -1,6 +1,7 @@
 #include "solid_mesh.h"
 
 #include "arrays.h"
+#include "paths.h"
 
 #include <bandvox/source/unite_shells.h>
 
@@ -31,11 +32,6 @@ std::shared_ptr<const MeshObject> meshOf(const py::object& source) {
     auto mesh = std::make_shared<MeshObject>();
     mesh->surface.mesh = {vectorsOf(arrays[0], "points"), indicesOf(arrays[1], "triangles")};
     return mesh;
-}
-
-bool isPath(const py::object& source) {
-    return py::isinstance<py::str>(source) || py::isinstance<py::bytes>(source) ||
-           py::hasattr(source, "__fspath__");
 }
 
 }  // namespace bandvox::python

@@ -26,7 +26,4 @@ SolidMesh solidOf(Mesh mesh, Capping capping, bool isUnion, Progress& progress);
 /// Error(ErrorKind::Usage) for pairs of other arrays.
 std::shared_ptr<const MeshObject> meshOf(const pybind11::object& source);
 
-/// True of what names a file: text, bytes, and objects of pathlib.
-bool isPath(const pybind11::object& source);
-
 }  // namespace bandvox::python

@@ -90,6 +90,14 @@ def test_errors_name_files_that_have_no_name_in_utf8(tmp_path):
         bandvox.read_vdb(os.fsencode(tmp_path) + b"/gr\xf6n.vdb")
 
 
+def test_names_that_no_file_has_are_refused():
+    for use in (bandvox.bandlimit, bandvox.info, bandvox.voxelize, bandvox.outline, bandvox.fit,
+                bandvox.bandlimit_points):
+        for name in ("a\0.obj", b"a\0.obj"):
+            with pytest.raises(bandvox.UsageError, match="zero byte"):
+                use(name)
+
+
 def test_openings_are_a_warning(cube):
     points, triangles = cube
     with pytest.warns(bandvox.BandvoxWarning):

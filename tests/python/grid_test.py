@@ -154,12 +154,26 @@ def test_what_is_no_number_is_named():
         bandvox.Grid.from_array(hole)
     with pytest.raises(bandvox.UsageError, match=r"found nan at \[1, 0, 0, 2\]"):
         bandvox.VectorGrid.from_array([[[[1, 1, 1]]], [[[1, 1, np.nan]]]])
+    large = sample().astype(float)
+    large[0, 1, 2] = 1e300
+    with np.errstate(over="ignore"), pytest.raises(
+            bandvox.UsageError, match=r"beyond those of float32 at \[0, 1, 2\]"):
+        bandvox.Grid.from_array(large)
     for wrong in ({"tolerance": np.nan}, {"tolerance": -1}, {"background": np.nan},
+                  {"background": 1e300},
                   {"voxel_size": np.inf}):
         with pytest.raises(bandvox.UsageError, match="expected"):
             bandvox.Grid.from_array(sample(), **wrong)
     with pytest.raises(bandvox.UsageError, match="<U1"):
         bandvox.Grid.from_array("a")
+
+
+def test_masked_values_are_not_taken_for_values():
+    array = np.ma.masked_greater(sample(), 0.5)
+    with pytest.raises(bandvox.UsageError, match="masked values.*filled"):
+        bandvox.Grid.from_array(array)
+    assert bandvox.Grid.from_array(array.filled(1)).active_voxel_count > 0
+    assert bandvox.Grid.from_array(np.ma.array(sample())).active_voxel_count > 0
 
 
 def test_wrong_arrays_are_named(torus):

@@ -99,3 +99,42 @@ def test_joining_is_interrupted():
     with pytest.raises(KeyboardInterrupt):
         bandvox.join_shards(parts, threads=1, progress=interrupt)
     assert bandvox.join_shards(parts).active_voxel_count > 400**3
+
+
+def normals(count):
+    """Places of the unit ball's surface."""
+    made = np.random.RandomState(4).normal(size=(count, 3))
+    return made / np.linalg.norm(made, axis=1)[:, np.newaxis]
+
+
+@pytest.fixture(scope="module")
+def surface():
+    random = np.random.RandomState(3)
+    return bandvox.fit(random.random_sample((50, 2)), random.random_sample(50), tension=1000)
+
+
+@pytest.mark.parametrize("name, samples", [("a.npy", 12000), ("a.exr", 6000), ("a.ply", 6000)])
+def test_writing_a_surface_is_interrupted(surface, name, samples, tmp_path):
+    interrupt_soon()
+    with pytest.raises(KeyboardInterrupt):
+        surface.save(tmp_path / name, samples=samples)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_sampling_a_surface_is_interrupted(surface):
+    interrupt_soon()
+    with pytest.raises(KeyboardInterrupt):
+        surface.mesh(samples=8000)
+    interrupt_soon()
+    with pytest.raises(KeyboardInterrupt):
+        surface.sample(samples=8000, quantities=["mean"])
+
+
+def test_fitting_points_in_space_is_interrupted():
+    places = normals(200_000)
+    interrupt_soon()
+    with pytest.raises(KeyboardInterrupt):
+        bandvox.bandlimit_points(places, normals=places)
+    interrupt_soon()
+    with pytest.raises(KeyboardInterrupt):
+        bandvox.fit_volume(places, places[:, 0])

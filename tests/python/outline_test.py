@@ -263,6 +263,17 @@ def area(points):
     return 0.5 * abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
 
 
+def test_masks_are_drawn_as_what_they_hold():
+    inside = np.zeros((20, 20, 20), dtype=bool)
+    inside[5:15, 5:15, 5:15] = True
+    mask = bandvox.MaskGrid.from_array(inside)
+    numbers = bandvox.Grid.from_array(inside.astype(float))
+    drawn, expected = (bandvox.outline(grid, kinds=["contour"]) for grid in (mask, numbers))
+    assert len(drawn.paths) == len(expected.paths) > 0
+    for path, other in zip(drawn.paths, expected.paths):
+        np.testing.assert_array_equal(path.points, other.points)
+
+
 def test_what_is_between_lines_is_filled():
     ball = bandvox.bandlimit("shape:sphere", resolution=48)
     view = {"camera": "orthographic", "eye": (0, 0, 5), "lookat": (0, 0, 0), "frame": 4,
