@@ -15,6 +15,7 @@
 #include <bandvox/grid/grid_place.h>
 #include <bandvox/source/mesh_source.h>
 #include <bandvox/source/read_mesh.h>
+#include <bandvox/source/read_patches.h>
 
 #include <nlohmann/json.hpp>
 

@@ -18,6 +18,7 @@
 #include <bandvox/bandlimit/soup_to_density.h>
 #include <bandvox/core/memory.h>
 #include <bandvox/grid/density_grid.h>
+#include <bandvox/source/read_patches.h>
 #include <bandvox/source/shapes.h>
 
 #include <nlohmann/json.hpp>

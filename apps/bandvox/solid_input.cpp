@@ -80,12 +80,6 @@ PositionalEntry solidInputEntry() {
             {.words = shapeWords(), .endings = meshExtensions()}};
 }
 
-bool isPatchFile(const std::string& input) {
-    if (isShape(input) || !mayHoldPatches(input)) return false;
-    return extensionOf(input) != ".obj" ||
-           (std::filesystem::is_regular_file(input) && hasFreeForm(input));
-}
-
 PatchSolid loadPatchSolid(CommandRun& run, const std::string& input,
                           const PatchSolidOptions& options) {
     PatchModel model = readPatches(input, run.progress());

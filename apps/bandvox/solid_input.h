@@ -15,10 +15,6 @@ namespace bandvox::app {
 /// The argument of a command that takes a mesh or a built-in shape.
 PositionalEntry solidInputEntry();
 
-/// True if it is a file with free-form surfaces, which are converted as such: a .bpt file, or an
-/// .obj file that has one. Throws Error(ErrorKind::Input) if an .obj file cannot be read.
-bool isPatchFile(const std::string& input);
-
 /// Throws Error(ErrorKind::Input), which says that one cannot `verb` it, unless `input` is named
 /// like a mesh file or a built-in shape.
 void requireMeshOrShape(const std::string& verb, const std::string& input);

@@ -6,6 +6,7 @@
 
 #include <bandvox/grid/join_shards.h>
 #include <bandvox/source/read_mesh.h>
+#include <bandvox/source/read_patches.h>
 #include <bandvox/source/shapes.h>
 
 #include <filesystem>

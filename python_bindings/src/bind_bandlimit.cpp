@@ -222,11 +222,6 @@ py::object bandlimit(const py::object& source, const BandlimitRequest& request) 
 
 }  // namespace
 
-bool isPatchFile(const std::filesystem::path& path) {
-    if (!mayHoldPatches(path)) return false;
-    return !isMeshFile(path) || (std::filesystem::is_regular_file(path) && hasFreeForm(path));
-}
-
 DensityResult densityOfSolid(const std::filesystem::path& path, const DensityOptions& options,
                              Progress& progress) {
     if (isShape(path.string())) {

@@ -40,11 +40,6 @@ py::object objectOf(const Json& json) {
     return py::module_::import("json").attr("loads")(text);
 }
 
-bool isPatchFile(const std::filesystem::path& path) {
-    return mayHoldPatches(path) &&
-           (!isMeshFile(path) || (std::filesystem::is_regular_file(path) && hasFreeForm(path)));
-}
-
 Json fileReport(const std::filesystem::path& path, Progress& progress) {
     if (isPatchFile(path)) return app::patchReport(path.string(), progress);
     if (isMeshFile(path)) return app::meshReport(path.string(), progress);

@@ -7,9 +7,6 @@
 
 namespace bandvox::python {
 
-/// True of files of free-form surfaces; an .obj may hold a mesh, and is looked into.
-bool isPatchFile(const std::filesystem::path& path);
-
 /// What bandlimit makes of a mesh file or a built-in shape, by the route that fits. Without the
 /// interpreter's lock. Throws as bandlimit does.
 DensityResult densityOfSolid(const std::filesystem::path& path, const DensityOptions& options,

@@ -53,9 +53,10 @@ int degreeFrom(NumberWalk& numbers, const std::string& what) {
 
 }  // namespace
 
-bool mayHoldPatches(const std::filesystem::path& path) {
+bool isPatchFile(const std::filesystem::path& path) {
     const std::string extension = lowerExtension(path);
-    return extension == ".bpt" || extension == ".obj" || isCadFile(path);
+    if (extension == ".obj") return std::filesystem::is_regular_file(path) && hasFreeForm(path);
+    return extension == ".bpt" || isCadFile(path);
 }
 
 bool isCadFile(const std::filesystem::path& path) {

@@ -9,9 +9,9 @@
 
 namespace bandvox {
 
-/// True if a file of this name may hold free-form surfaces: .bpt, .obj, and those of
-/// cadExtensions().
-bool mayHoldPatches(const std::filesystem::path& path);
+/// True of files of free-form surfaces, by their names: .bpt, and those of cadExtensions(). An .obj
+/// may hold a mesh, and is looked into. Throws Error(ErrorKind::Input) if that cannot be read.
+bool isPatchFile(const std::filesystem::path& path);
 
 /// True if a file of this name is one of a program for constructions.
 bool isCadFile(const std::filesystem::path& path);
