@@ -1,5 +1,8 @@
 #include "source/face_regions.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace bandvox {
@@ -85,12 +88,15 @@ double FaceRegions::Part::shareAt(double v) const {
     if (curve.size() == 2) {
         return rise != 0 ? std::clamp((v - curve.front()[1]) / rise, 0.0, 1.0) : 0.5;
     }
-    // Newton's method within a bracket.
+    // Newton's method within a bracket, until only rounding is left.
+    const double rounding = 2 * std::numeric_limits<double>::epsilon() *
+                            std::max(std::abs(curve.front()[1]), std::abs(curve.back()[1]));
     double low = 0, high = 1;
     double t = rise != 0 ? std::clamp((v - curve.front()[1]) / rise, 0.0, 1.0) : 0.5;
     for (int step = 0; step < 60; ++step) {
         const ParameterJet jet = jetAt(curve, t);
         const double off = jet.place[1] - v;
+        if (std::abs(off) <= rounding) break;
         ((off < 0) == isRising ? low : high) = t;
         double next = jet.slope[1] != 0 ? t - off / jet.slope[1] : low - 1;
         if (!(next > low && next < high)) next = 0.5 * (low + high);

@@ -17,8 +17,14 @@ struct ParameterJet {
 };
 
 /// At t, 0 to 1, by de Casteljau's scheme.
-inline ParameterJet jetAt(ParameterCurve points, double t) {
-    const std::size_t degree = points.size() - 1;
+inline ParameterJet jetAt(const ParameterCurve& curve, double t) {
+    constexpr std::size_t kFew = 16;
+    std::array<ParameterCurve::value_type, kFew> few;
+    ParameterCurve many;
+    if (curve.size() > kFew) many = curve;
+    ParameterCurve::value_type* const points = many.empty() ? few.data() : many.data();
+    if (many.empty()) std::copy(curve.begin(), curve.end(), points);
+    const std::size_t degree = curve.size() - 1;
     ParameterJet jet;
     for (std::size_t rest = degree; rest > 0; --rest) {
         if (rest == 1) {
