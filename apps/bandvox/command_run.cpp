@@ -208,6 +208,11 @@ void CommandRun::writeOutput(AtomicFile& output, const std::function<void(Atomic
     mFinished = true;
 }
 
+void CommandRun::leaveToExit(std::shared_ptr<const void> object) {
+    static auto* const left = new std::vector<std::shared_ptr<const void>>;
+    if (!mFrames) left->push_back(std::move(object));
+}
+
 void CommandRun::finish() {
     mProgress.throwIfInterrupted();
     if (mStatistics) {

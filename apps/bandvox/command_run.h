@@ -55,6 +55,10 @@ class CommandRun {
     /// The same for one output of several: commits it, and does not finish.
     void writePart(AtomicFile& output, const std::function<void(AtomicFile&)>& write);
 
+    /// Leaves what takes long to be freed, as a large grid does, to the end of the process, where
+    /// all goes at once. Of a command that consists of frames nothing is left.
+    void leaveToExit(std::shared_ptr<const void> object);
+
     /// Writes the statistics if they are asked for. The last step of a command without output, or
     /// with several.
     void finish();

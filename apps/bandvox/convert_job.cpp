@@ -142,6 +142,7 @@ ConvertJob::ConvertJob(CommandRun& run, const CommandLine& line, const fs::path&
 void ConvertJob::writeVolume(AtomicFile& output, const openvdb::GridCPtrVec& grids,
                              const VdbWriteOptions& options) {
     const openvdb::GridCPtrVec written = stamped(grids, mStamp);
+    for (const openvdb::GridBase::ConstPtr& grid : grids) mRun.leaveToExit(grid);
     // The volume gets its name first: nothing ever refers to one that is not there.
     mRun.writeOutput(output, [&](AtomicFile& file) {
         writeVdb(file, written, options);

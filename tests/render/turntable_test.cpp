@@ -32,7 +32,7 @@ TEST(Turntable, TurnsAroundInEvenSteps) {
 
 TEST(Turntable, IsMadeUntilTheWorkIsToStop) {
     const Scene scene = ballScene();
-    expectStopsMidway(100, [&](Progress& progress) { turntable(scene, {}, 50, progress); });
+    expectStopsMidway(20, [&](Progress& progress) { turntable(scene, {}, 50, progress); });
 }
 
 }  // namespace

@@ -10,8 +10,10 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <string>
+#include <system_error>
 
 namespace bandvox {
 
@@ -145,6 +147,7 @@ void AtomicFile::forget() {
 }
 
 void AtomicFile::release() {
+    if (mSync.valid()) mSync.wait();
     if (mLock >= 0) ::close(mLock);
     mLock = -1;
 }
@@ -156,6 +159,22 @@ std::ofstream AtomicFile::open() {
                          std::ios::binary | (mInPlace ? std::ios::app : std::ios::trunc));
     if (!stream) fail(mTarget, std::strerror(errno));
     return stream;
+}
+
+void AtomicFile::beginSync() noexcept {
+#ifdef __linux__
+    using std::chrono::seconds;
+    const bool isBusy = mSync.valid() && mSync.wait_for(seconds(0)) != std::future_status::ready;
+    if (mLock < 0 || isBusy) return;
+    try {
+        // It waits where the disk has enough to do.
+        mSync = std::async(std::launch::async, [lock = mLock] {
+            ::sync_file_range(lock, 0, 0, SYNC_FILE_RANGE_WRITE);
+        });
+    } catch (const std::system_error&) {
+        // Without another thread there is more to wait for in the end.
+    }
+#endif
 }
 
 void AtomicFile::complete() {

@@ -2,9 +2,8 @@
 
 #include "grid/spooled_grid.h"
 
-#include <bandvox/core/parallel.h>
-
 #include <openvdb/io/io.h>
+#include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -24,20 +23,31 @@ constexpr std::size_t kLeavesTogether = 32;
 /// Of such groups in memory at once, before they go to the file.
 constexpr std::size_t kGroupsTogether = 64;
 
-// How leaves are to be compressed is told in the stream.
-void tellTheSame(std::ostream& part, std::ios_base& told) {
-    part.exceptions(std::ios::badbit | std::ios::failbit);
-    const auto metadata = openvdb::io::getStreamMetadataPtr(told);
-    auto copy = std::make_shared<openvdb::io::StreamMetadata>();
-    if (metadata) *copy = *metadata;
-    openvdb::io::setStreamMetadataPtr(part, copy, /*transfer=*/false);
-    openvdb::io::setVersion(part,
-                            openvdb::VersionId(openvdb::OPENVDB_LIBRARY_MAJOR_VERSION,
-                                               openvdb::OPENVDB_LIBRARY_MINOR_VERSION),
-                            openvdb::OPENVDB_FILE_VERSION);
-    openvdb::io::setDataCompression(part, openvdb::io::getDataCompression(told));
-    openvdb::io::setGridBackgroundValuePtr(part, openvdb::io::getGridBackgroundValuePtr(told));
-}
+// Memory to which leaves are written as to a stream, in which it is told how.
+class PartOutput {
+  public:
+    explicit PartOutput(std::ios_base& told)
+        : mMetadata(std::make_shared<openvdb::io::StreamMetadata>()) {
+        mStream.exceptions(std::ios::badbit | std::ios::failbit);
+        if (const auto metadata = openvdb::io::getStreamMetadataPtr(told)) *mMetadata = *metadata;
+        openvdb::io::setStreamMetadataPtr(mStream, mMetadata, /*transfer=*/false);
+        openvdb::io::setVersion(mStream,
+                                openvdb::VersionId(openvdb::OPENVDB_LIBRARY_MAJOR_VERSION,
+                                                   openvdb::OPENVDB_LIBRARY_MINOR_VERSION),
+                                openvdb::OPENVDB_FILE_VERSION);
+        openvdb::io::setDataCompression(mStream, openvdb::io::getDataCompression(told));
+        openvdb::io::setGridBackgroundValuePtr(mStream,
+                                               openvdb::io::getGridBackgroundValuePtr(told));
+    }
+    PartOutput(const PartOutput&) = delete;
+    PartOutput& operator=(const PartOutput&) = delete;
+
+    std::ostringstream& stream() { return mStream; }
+
+  private:
+    openvdb::io::StreamMetadata::Ptr mMetadata;  // the stream has its address
+    std::ostringstream mStream;
+};
 
 // A grid whose leaves are compressed by tasks, and then written in their order. OpenVDB's own
 // compresses one after another.
@@ -71,24 +81,28 @@ openvdb::GridBase::Ptr writtenQuickly(const openvdb::GridBase& grid) {
 
 void writeByAllThreads(std::ostream& stream, std::size_t count,
                        const std::function<void(std::size_t, std::ostream&)>& writeLeaf) {
-    constexpr std::size_t kLeavesAtOnce = kLeavesTogether * kGroupsTogether;
-    for (std::size_t begin = 0; begin < count; begin += kLeavesAtOnce) {
-        const std::size_t end = std::min(begin + kLeavesAtOnce, count);
-        std::vector<std::string> groups((end - begin + kLeavesTogether - 1) / kLeavesTogether);
-        parallelFor(static_cast<std::int64_t>(groups.size()), [&](std::int64_t i) {
-            const auto group = static_cast<std::size_t>(i);
-            const std::size_t first = begin + group * kLeavesTogether;
-            std::ostringstream part;
-            tellTheSame(part, stream);
-            for (std::size_t leaf = first; leaf < std::min(first + kLeavesTogether, end); ++leaf) {
-                writeLeaf(leaf, part);
-            }
-            groups[group] = std::move(part).str();
-        });
-        for (const std::string& bytes : groups) {
-            stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        }
-    }
+    PartOutput told(stream);
+    std::size_t begun = 0;
+    const auto begin = [&](tbb::flow_control& flow) {
+        const std::size_t first = begun;
+        if (first >= count) flow.stop();
+        begun += kLeavesTogether;
+        return first;
+    };
+    const auto compress = [&](std::size_t first) {
+        PartOutput part(told.stream());
+        const std::size_t end = std::min(first + kLeavesTogether, count);
+        for (std::size_t leaf = first; leaf < end; ++leaf) writeLeaf(leaf, part.stream());
+        return std::move(part.stream()).str();
+    };
+    const auto write = [&](const std::string& bytes) {
+        stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    };
+    tbb::parallel_pipeline(
+        kGroupsTogether,
+        tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, begin) &
+            tbb::make_filter<std::size_t, std::string>(tbb::filter_mode::parallel, compress) &
+            tbb::make_filter<std::string, void>(tbb::filter_mode::serial_in_order, write));
 }
 
 openvdb::GridBase::Ptr writtenByAllThreads(const openvdb::GridBase& grid) {

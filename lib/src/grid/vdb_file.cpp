@@ -125,7 +125,7 @@ void writeVdb(AtomicFile& file, const openvdb::GridCPtrVec& grids, const VdbWrit
     try {
         std::ofstream stream = file.open();
         stream.exceptions(std::ios::badbit | std::ios::failbit);
-        WatchedOutput buffer(*stream.rdbuf(), progress);
+        WatchedOutput buffer(*stream.rdbuf(), file, progress);
         std::ostream watched(&buffer);
         watched.exceptions(std::ios::badbit | std::ios::failbit);
         archive.writeGrids(watched, saved, /*seekable=*/!file.inPlace());

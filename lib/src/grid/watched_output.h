@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bandvox/core/atomic_file.h>
 #include <bandvox/core/progress.h>
 
 #include <ios>
@@ -7,15 +8,23 @@
 
 namespace bandvox {
 
-/// Hands what is written on to another buffer, until the work is to stop: then writing throws
-/// Error(ErrorKind::Interrupted), as a stream does that is told to throw when it is bad.
+/// Hands what is written on to the buffer of a file, until the work is to stop: then writing throws
+/// Error(ErrorKind::Interrupted), as a stream does that is told to throw when it is bad. Now and
+/// then the system is told to begin with the disk.
 class WatchedOutput final : public std::streambuf {
   public:
-    WatchedOutput(std::streambuf& to, const Progress& progress) : mTo(to), mProgress(progress) {}
+    WatchedOutput(std::streambuf& to, AtomicFile& file, const Progress& progress)
+        : mTo(to), mFile(file), mProgress(progress) {}
 
   protected:
     std::streamsize xsputn(const char* from, std::streamsize count) override {
         mProgress.throwIfInterrupted();
+        constexpr std::streamsize kBetweenSyncs = 16 << 20;
+        mSinceSync += count;
+        if (mSinceSync > kBetweenSyncs) {
+            mSinceSync = 0;
+            mFile.beginSync();
+        }
         return mTo.sputn(from, count);
     }
     int_type overflow(int_type c) override {
@@ -34,7 +43,9 @@ class WatchedOutput final : public std::streambuf {
 
   private:
     std::streambuf& mTo;
+    AtomicFile& mFile;
     const Progress& mProgress;
+    std::streamsize mSinceSync = 0;
 };
 
 }  // namespace bandvox

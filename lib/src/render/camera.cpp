@@ -1,9 +1,12 @@
 #include <bandvox/core/error.h>
+#include <bandvox/core/parallel.h>
 #include <bandvox/render/camera.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <sstream>
 #include <utility>
@@ -80,61 +83,89 @@ std::array<openvdb::Vec3d, 8> cornersOf(const openvdb::BBoxd& box) {
     return corners;
 }
 
+// Of all points, by many threads: add(point, part) puts one to a part, join(part, other) one part
+// to another.
+template <typename Part, typename Add, typename Join>
+Part reduced(std::span<const openvdb::Vec3d> points, const Part& none, const Add& add,
+             const Join& join) {
+    constexpr std::size_t kTogether = 32768;
+    std::vector<Part> parts((points.size() + kTogether - 1) / kTogether, none);
+    parallelFor(static_cast<std::int64_t>(parts.size()), [&](std::int64_t i) {
+        const auto k = static_cast<std::size_t>(i);
+        const std::size_t first = k * kTogether;
+        const std::size_t count = std::min(kTogether, points.size() - first);
+        Part part = none;
+        for (const openvdb::Vec3d& point : points.subspan(first, count)) add(point, part);
+        parts[k] = part;
+    });
+    Part all = none;
+    for (const Part& part : parts) join(all, part);
+    return all;
+}
+
 openvdb::Vec3d middleOf(std::span<const openvdb::Vec3d> points) {
-    openvdb::BBoxd box;
-    for (const openvdb::Vec3d& p : points) box.expand(p);
-    return box.getCenter();
+    return reduced(
+               points, openvdb::BBoxd(),
+               [](const openvdb::Vec3d& p, openvdb::BBoxd& box) { box.expand(p); },
+               [](openvdb::BBoxd& box, const openvdb::BBoxd& other) { box.expand(other); })
+        .getCenter();
 }
 
-// Points relative to `center`, along the camera's axes: right, up, forward.
-std::vector<openvdb::Vec3d> seenFrom(const openvdb::Vec3d& center, const Camera& camera,
-                                     std::span<const openvdb::Vec3d> points) {
-    std::vector<openvdb::Vec3d> seen;
-    seen.reserve(points.size());
-    for (const openvdb::Vec3d& point : points) {
-        const openvdb::Vec3d offset = point - center;
-        seen.emplace_back(offset.dot(camera.right()), offset.dot(camera.upward()),
-                          offset.dot(camera.forward()));
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// How far points reach from a center, to the right and upward on the plane through it, and in
+// depth. With an eye that frames them, points stand for what hides behind them there.
+struct Reach {
+    std::array<double, 2> low{kInfinity, kInfinity}, high{-kInfinity, -kInfinity};
+    double near = kInfinity, far = -kInfinity;
+
+    void join(const Reach& other) {
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            low[axis] = std::min(low[axis], other.low[axis]);
+            high[axis] = std::max(high[axis], other.high[axis]);
+        }
+        near = std::min(near, other.near);
+        far = std::max(far, other.far);
     }
-    return seen;
+};
+
+// A point c at forward distance d is seen by an eye at distance D if |c - middle| ≤ t (D + d), t =
+// `tangents`; 0 for a parallel view.
+Reach reachOf(std::span<const openvdb::Vec3d> points, const openvdb::Vec3d& center,
+              const Camera& camera, const std::array<double, 2>& tangents) {
+    const auto add = [&](const openvdb::Vec3d& point, Reach& reach) {
+        const openvdb::Vec3d offset = point - center;
+        const double across[] = {offset.dot(camera.right()), offset.dot(camera.upward())};
+        const double forward = offset.dot(camera.forward());
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            const double spread = tangents[axis] * forward;
+            reach.low[axis] = std::min(reach.low[axis], across[axis] + spread);
+            reach.high[axis] = std::max(reach.high[axis], across[axis] - spread);
+        }
+        reach.near = std::min(reach.near, forward);
+        reach.far = std::max(reach.far, forward);
+    };
+    return reduced(points, Reach(), add, [](Reach& a, const Reach& b) { a.join(b); });
 }
 
-// What points take up along one axis of the picture, on the plane through their center.
+// What points take up along one axis of the picture, on the plane through their center: reach is
+// t D, or half the width of a parallel view.
 struct Fit {
     double middle, reach;
 };
 
-// A point c at forward distance d is seen by an eye at distance D if |c - middle| ≤ t (D + d),
-// t = `tangent`; then reach = t D. For t = 0, orthographic, it is half the width.
-Fit fit(std::span<const openvdb::Vec3d> points, int axis, double tangent, bool centered) {
-    double high = -std::numeric_limits<double>::infinity(), low = -high;
-    for (const openvdb::Vec3d& point : points) {
-        high = std::max(high, point[axis] - tangent * point[2]);
-        low = std::min(low, point[axis] + tangent * point[2]);
-    }
+Fit fit(const Reach& reach, std::size_t axis, bool centered) {
+    const double low = reach.low[axis], high = reach.high[axis];
     if (centered) return {0.5 * (high + low), 0.5 * (high - low)};
     return {0, std::max(high, -low)};
-}
-
-// The smallest and the largest forward distance of points from their center.
-std::pair<double, double> depthsOf(std::span<const openvdb::Vec3d> points) {
-    if (points.empty()) return {0, 0};
-    const auto isNearer = [](const openvdb::Vec3d& a, const openvdb::Vec3d& b) {
-        return a[2] < b[2];
-    };
-    const auto [near, far] = std::minmax_element(points.begin(), points.end(), isNearer);
-    return {(*near)[2], (*far)[2]};
 }
 
 }  // namespace
 
 void requireValid(const CameraOptions& options) {
-    if (!(options.focal > 0) || !std::isfinite(options.focal)) {
-        refuse("focal length, mm,", options.focal, "above 0");
-    }
-    if (!(options.aperture > 0) || !std::isfinite(options.aperture)) {
-        refuse("aperture, mm,", options.aperture, "above 0");
-    }
+    const auto isLength = [](double mm) { return mm >= 1e-3 && mm <= 1e6; };
+    if (!isLength(options.focal)) refuse("focal length, mm,", options.focal, "0.001 to 1000000");
+    if (!isLength(options.aperture)) refuse("aperture, mm,", options.aperture, "0.001 to 1000000");
     if (!(options.frame >= 0) || !std::isfinite(options.frame)) {
         refuse("frame, world units,", options.frame, "above 0, or 0 to fit");
     }
@@ -160,7 +191,7 @@ Camera::Camera(const CameraOptions& options, int width, int height,
     requireValid(options);
 
     // Turn the axes.
-    const openvdb::Vec3d lookat = options.lookat.value_or(middleOf(object));
+    const openvdb::Vec3d lookat = options.lookat ? *options.lookat : middleOf(object);
     const openvdb::Vec3d back = directionBack(options, lookat);
     mForward = -back;
     mRight = directionRight(options, back);
@@ -169,12 +200,13 @@ Camera::Camera(const CameraOptions& options, int width, int height,
     // Frame the object, around the lookat if that was given, else in the middle of the picture.
     const double aspect = mPixelsHigh / mPixelsWide;
     const bool centered = !options.eye && !options.lookat;
-    const std::vector<openvdb::Vec3d> points = seenFrom(lookat, *this, object);
     if (perspective) mHalfWidth = 0.5 * options.aperture / options.focal;
     const double tangent = perspective ? mHalfWidth / kFrameMargin : 0;
-    const Fit across = fit(points, 0, tangent, centered);
-    const Fit along = fit(points, 1, tangent * aspect, centered);
-    const auto [near, far] = depthsOf(points);
+    const Reach reach = reachOf(object, lookat, *this, {tangent, tangent * aspect});
+    const Fit across = fit(reach, 0, centered);
+    const Fit along = fit(reach, 1, centered);
+    const double near = object.empty() ? 0 : reach.near;
+    const double far = object.empty() ? 0 : reach.far;
     double distance = 0;
     if (perspective) {
         distance = std::max(across.reach / tangent, along.reach / (tangent * aspect));

@@ -1,9 +1,12 @@
 #include "render/picture_request.h"
 
 #include <bandvox/core/error.h>
+#include <bandvox/core/parallel.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -144,7 +147,7 @@ void requireDrawable(const openvdb::FloatGrid& grid) {
                                           grid.transform().mapType() +
                                           ", which bends lines of sight; expected a linear one");
     }
-    if (grid.evalActiveVoxelBoundingBox().empty()) {
+    if (!grid.cbeginValueOn()) {
         throw Error(ErrorKind::Input,
                     name + "has no active voxel; expected a density or a level set");
     }
@@ -171,8 +174,8 @@ bool needsFraming(const CameraOptions& camera) {
 }
 
 std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid, const Progress& progress) {
-    std::vector<openvdb::Vec3d> points;
-    const auto add = [&](const openvdb::CoordBBox& voxels) {
+    using Points = std::vector<openvdb::Vec3d>;
+    const auto add = [&](const openvdb::CoordBBox& voxels, Points& points) {
         if (voxels.empty()) return;
         for (int i = 0; i < 8; ++i) {
             openvdb::Vec3d corner;
@@ -183,23 +186,39 @@ std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid, const P
             points.push_back(grid.indexToWorld(corner));
         }
     };
-    for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
+    std::vector<const openvdb::FloatTree::LeafNodeType*> leaves;
+    grid.tree().getNodes(leaves);
+    constexpr std::size_t kTogether = 4096;
+    std::vector<Points> parts((leaves.size() + kTogether - 1) / kTogether);
+    parallelFor(static_cast<std::int64_t>(parts.size()), [&](std::int64_t i) {
         progress.throwIfInterrupted();
-        openvdb::CoordBBox box;
-        leaf->evalActiveBoundingBox(box);
-        add(box);
-    }
+        const auto k = static_cast<std::size_t>(i);
+        const std::size_t end = std::min((k + 1) * kTogether, leaves.size());
+        parts[k].reserve(8 * (end - k * kTogether));
+        for (std::size_t leaf = k * kTogether; leaf < end; ++leaf) {
+            openvdb::CoordBBox box;
+            leaves[leaf]->evalActiveBoundingBox(box);
+            add(box, parts[k]);
+        }
+    });
+    Points points;
+    points.reserve(8 * leaves.size());
+    for (const Points& part : parts) points.insert(points.end(), part.begin(), part.end());
     auto tile = grid.cbeginValueOn();
     tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
-    for (; tile; ++tile) add(tile.getBoundingBox());
+    for (; tile; ++tile) add(tile.getBoundingBox(), points);
     return points;
 }
 
 std::vector<openvdb::Vec3d> pointsToFrame(const Scene& scene, const Progress& progress) {
     std::vector<openvdb::Vec3d> points;
     for (const SceneObject& object : scene.objects) {
-        const std::vector<openvdb::Vec3d> active = activePoints(*object.grid, progress);
-        points.insert(points.end(), active.begin(), active.end());
+        std::vector<openvdb::Vec3d> active = activePoints(*object.grid, progress);
+        if (points.empty()) {
+            points = std::move(active);
+        } else {
+            points.insert(points.end(), active.begin(), active.end());
+        }
     }
     return points;
 }

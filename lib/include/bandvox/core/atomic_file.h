@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <optional>
 
 namespace bandvox {
@@ -47,6 +48,10 @@ class AtomicFile {
     /// extension. Empty before that, and if the target is written in place.
     const std::filesystem::path& temporary() const { return mTemporary; }
 
+    /// Begins to bring to the disk what was written so far, and does not wait for it: there will be
+    /// less for complete() to wait for.
+    void beginSync() noexcept;
+
     /// Waits until the written file is on the disk, so that committing it hardly can fail. To be
     /// called, if at all, after the last write. Throws Error(ErrorKind::Runtime) if that fails.
     void complete();
@@ -71,6 +76,7 @@ class AtomicFile {
     std::optional<mode_t> mMode;  // of the file that is replaced
     int mSlot = -1;               // in the table of temporaries
     int mLock = -1;               // descriptor that keeps others from removing the temporary
+    std::future<void> mSync;      // what beginSync has begun
     bool mCompleted = false;
     bool mCommitted = false;
 };
