@@ -59,7 +59,9 @@ class OptionValues {
     /// True if the setting was given.
     bool has(const std::string& name) const { return mValues.contains(name); }
     /// True if it was, and not by a file, which may hold what a command has no use for.
-    bool isAsked(const std::string& name) const { return has(name) && mOrigins.at(name).empty(); }
+    bool isAsked(const std::string& name) const { return has(name) && origin(name).empty(); }
+    /// Where a setting that was given stands; empty if that is not worth telling.
+    const std::string& origin(const std::string& name) const { return mOrigins.at(name); }
     /// The text given, or nothing.
     std::optional<std::string> text(const std::string& name) const;
     /// The same, or what setDefault has set.

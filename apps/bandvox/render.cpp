@@ -94,6 +94,7 @@ RenderRequest parseRender(const CommandLine& line) {
     for (const OptionEntry& entry : pictureEntries()) names.push_back(entry.name);
     request.scene = readScene(line, names);
     request.picture = readPictureOptions(request.scene.picture);
+    requireUsedCamera(request.scene.picture, request.picture.camera);
     request.channels = readChannels(request.scene.picture);
     if (request.scene.picture.has("channels") && extensionOf(request.output) != ".exr") {
         throw Error(ErrorKind::Usage, "channels are chosen of an .exr, and '" + request.output +
@@ -254,6 +255,7 @@ void runRender(const CommandLine& line) {
     if (!request.frames.empty()) return drawSequence(run, request);
     AtomicFile output(request.output);
     const Scene scene = loadScene(run, request.scene, 0);
+    for (const SceneObject& object : scene.objects) run.leaveToExit(object.grid);
     Totals totals;
     const Image image = drawFrame(run, request, scene, request.picture, output, totals);
     run.writeOutput(output, [&](AtomicFile& file) {

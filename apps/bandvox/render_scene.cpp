@@ -63,7 +63,8 @@ ObjectRequest readObject(const OptionValues& values, const std::string& file) {
     material.refractiveIndex =
         values.number("refraction", {.low = 1, .high = 4}, material.refractiveIndex);
     material.tintLength = values.number("tint-length", kLength, material.tintLength);
-    medium.extinction = values.number("extinction", kLength, medium.extinction);
+    medium.extinction =
+        values.number("extinction", {.low = 0, .high = 1e30, .lowOpen = true}, medium.extinction);
     medium.anisotropy =
         values.number("anisotropy", {.low = -0.999, .high = 0.999}, medium.anisotropy);
     medium.emission = values.vector("emission", kAnyColor).value_or(medium.emission);
@@ -109,8 +110,12 @@ void readLights(const CommandLine& line, SceneRequest& request) {
     if (environment.map && !isAskedFor) return;
     Light light;
     light.place = line.vector("light", kAnyPlace).value_or(standard.light);
-    if (const auto place = line.vector("light-at", kAnyPlace)) {
-        if (line.has("light")) line.fail("light-at", "either this or --light, which is given too");
+    const auto place = line.vector("light-at", kAnyPlace);
+    const bool hasBoth = place && line.has("light");
+    if (hasBoth && line.isAsked("light") == line.isAsked("light-at")) {
+        line.fail("light-at", "either this or --light, which is given too");
+    }
+    if (place && !(hasBoth && line.isAsked("light"))) {
         light = {Light::Kind::Point, *place, false};
     }
     const double rest = environment.map ? 1 : 1 - ambient;
@@ -190,7 +195,7 @@ void readSceneFile(const CommandLine& line, const std::string& path,
         }
         readPictureOptions(values);  // refuses what cannot be, by the file's name
         for (const auto& [name, value] : values.all()) {
-            if (!request.picture.has(name)) request.picture.set(name, value);
+            if (!request.picture.has(name)) request.picture.set(name, value, file.path());
         }
     }
 }
@@ -226,7 +231,9 @@ void loadGrids(CommandRun& run, const ObjectRequest& request, const std::string&
 
 SceneRequest readScene(const CommandLine& line, const std::vector<std::string>& pictureNames) {
     SceneRequest request;
-    for (const auto& [name, value] : line.all()) request.picture.set(name, value);
+    for (const auto& [name, value] : line.all()) {
+        request.picture.set(name, value, line.origin(name));
+    }
     const std::vector<std::string>& inputs = line.positionals();
     if (inputs.size() == 1 && extensionOf(inputs[0]) == ".json") {
         readSceneFile(line, inputs[0], pictureNames, request);

@@ -17,7 +17,7 @@ constexpr int kMostPixels = 65536;  // along a side
 constexpr int kMostSamples = 1024;
 constexpr int kMostBounces = 64;
 constexpr int kMostMegabytes = 1 << 20;
-const Range kPositive{.low = 0, .lowOpen = true};
+const Range kLens{.low = 1e-3, .high = 1e6};  // mm
 const std::vector<std::string> kProjections{"perspective", "orthographic"};
 const std::vector<std::string> kVolumeMethods{"steps", "tracking"};
 
@@ -54,17 +54,20 @@ CameraOptions readCamera(const OptionValues& values, double aspect) {
     if (const auto lookat = values.vector("lookat", kAnyPlace)) camera.lookat = lookat;
     if (const auto up = values.vector("up", kAnyPlace)) camera.up = up;
     camera.from = values.vector("from", kAnyPlace).value_or(camera.from);
-    camera.aperture = values.number("aperture", kPositive, camera.aperture);
-    camera.focal = values.number("focal", kPositive, camera.focal);
-    if (values.has("fov")) {
-        if (values.has("focal")) {
-            values.fail("fov", "either this or the focal length, which is given too");
-        }
+    camera.aperture = values.number("aperture", kLens, camera.aperture);
+    camera.focal = values.number("focal", kLens, camera.focal);
+    const bool hasBoth = values.has("fov") && values.has("focal");
+    if (hasBoth && values.isAsked("fov") == values.isAsked("focal")) {
+        values.fail("fov", "either this or the focal length, which is given too");
+    }
+    // What a command asks for comes before what a file says.
+    if (values.has("fov") && !(hasBoth && values.isAsked("focal"))) {
         const double degrees =
             values.number("fov", {.low = 0, .high = 180, .lowOpen = true, .highOpen = true}, 45);
         camera.focal = 0.5 * camera.aperture / std::tan(0.5 * degrees * std::numbers::pi / 180);
     }
-    if (values.has("frame") && camera.projection != Projection::Orthographic) {
+    const bool isFrameMeant = values.isAsked("frame") || !values.isAsked("camera");
+    if (values.has("frame") && isFrameMeant && camera.projection != Projection::Orthographic) {
         values.fail("frame", "--camera orthographic beside it, whose view has this width");
     }
     camera.frame = values.number("frame", {.low = 0}, camera.frame);

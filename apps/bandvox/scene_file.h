@@ -21,6 +21,8 @@ class SceneFile {
     explicit SceneFile(const std::string& path);
     ~SceneFile();
 
+    std::string path() const { return mPath.string(); }
+
     bool has(const std::string& group) const;
 
     /// The settings of a group. Throws Error(ErrorKind::Input) if it has others than `names`.

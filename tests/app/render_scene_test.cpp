@@ -77,6 +77,7 @@ class RenderScene : public testing::Test {
 
 std::unique_ptr<TemporaryFolder> RenderScene::sFolder;
 
+const Names kParallel{"--camera", "orthographic", "--res", "32x32"};
 const Names kFront{"--camera", "orthographic", "--from", "0,0,1", "--res", "32x32"};
 
 Names with(const Names& first, const Names& second) {
@@ -222,7 +223,7 @@ TEST_F(RenderScene, GridsOfOneNameAreToldApart) {
     EXPECT_EQ(both.status, 3);
     EXPECT_NE(both.err.find("surface[1]"), std::string::npos) << both.err;
     EXPECT_EQ(render(with({"twins.vdb", "-o", "x.png"}, kFront)).status, 3);
-    const Names view = with(kFront, {"--frame", "4", "--eye", "0,0,5", "--lookat", "0,0,0"});
+    const Names view = with(kParallel, {"--frame", "4", "--eye", "0,0,5", "--lookat", "0,0,0"});
     ASSERT_EQ(render(with({"twins.vdb", "-o", "0.exr", "--grid", "surface[0]"}, view)).status, 0);
     ASSERT_EQ(render(with({"twins.vdb", "-o", "1.exr", "--grid", "surface[1]"}, view)).status, 0);
     EXPECT_NEAR(read("0.exr").at(16, 16)[4], 4, 0.02);
@@ -235,7 +236,7 @@ TEST_F(RenderScene, GridsOfOneNameAreToldApart) {
 }
 
 TEST_F(RenderScene, ObjectsAreMoved) {
-    const Names view = with(kFront, {"--frame", "8", "--eye", "0,0,9", "--lookat", "0,0,0"});
+    const Names view = with(kParallel, {"--frame", "8", "--eye", "0,0,9", "--lookat", "0,0,0"});
     ASSERT_EQ(render(with({"sphere.vdb", "cube.vdb", "-o", "moved.exr", "--scale", "0.5/1",
                            "--translate", "-2,0,1/2,1,0", "--rotate", "0,0,0/0,0,45"},
                           view))

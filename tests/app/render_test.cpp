@@ -81,16 +81,56 @@ TEST_F(Render, BackgroundFillsThePicture) {
 }
 
 TEST_F(Render, TakesEveryCameraOption) {
-    const RunResult result = render(
-        {"-o",           "s.png",   "--res",      "16x16",     "--samples", "2",       "--camera",
-         "orthographic", "--up",    "0,0,1",      "--from",    "-1,-1,0.5", "--frame", "3",
-         "--focal",      "35",      "--aperture", "36",        "--iso",     "0.4",     "--light",
-         "1,1,1",        "--color", "1,0.5,0.2",  "--ambient", "0.3",       "--grid",  "density",
-         "--stats",      "r.json"});
-    ASSERT_EQ(result.status, 0) << result.err;
-    const auto statistics = nlohmann::json::parse(readText(mFolder / "r.json"));
-    EXPECT_EQ(statistics.at("counts").at("rays"), 16 * 16 * 2);
-    EXPECT_GT(statistics.at("counts").at("hits").get<int>(), 0);
+    for (const Names& lens : {Names{"--camera", "orthographic", "--frame", "3"},
+                              Names{"--focal", "35", "--aperture", "36"}}) {
+        Names all{"-o",      "s.png",   "--res",   "16x16",   "--samples", "2",
+                  "--up",    "0,0,1",   "--from",  "-1,-1,1", "--iso",     "0.4",
+                  "--light", "1,1,1",   "--color", "1,0.5,0", "--ambient", "0.3",
+                  "--grid",  "density", "--stats", "r.json"};
+        all.insert(all.end(), lens.begin(), lens.end());
+        const RunResult result = render(all);
+        ASSERT_EQ(result.status, 0) << result.err;
+        const auto statistics = nlohmann::json::parse(readText(mFolder / "r.json"));
+        EXPECT_EQ(statistics.at("counts").at("rays"), 16 * 16 * 2);
+        EXPECT_GT(statistics.at("counts").at("hits").get<int>(), 0);
+    }
+}
+
+TEST_F(Render, RefusesCameraOptionsThatChangeNothing) {
+    for (const Names& arguments :
+         {Names{"--fov", "40", "--camera", "orthographic"},
+          Names{"--focal", "40", "--camera", "orthographic"}, Names{"--frame", "3"},
+          Names{"--from", "0,0,1", "--eye", "0,0,9"}, Names{"--fov", "40", "--focal", "40"},
+          Names{"--aperture", "1e-300"}, Names{"--extinction", "0", "--mode", "volume"}}) {
+        Names all{"-o", "s.png", "--res", "8x8"};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        const RunResult result = render(all);
+        EXPECT_EQ(result.status, 2) << arguments[0] << result.err;
+        EXPECT_NE(result.err.find(arguments[0]), std::string::npos) << result.err;
+    }
+}
+
+TEST_F(Render, WhatIsAskedForComesBeforeWhatAFileSays) {
+    const auto picture = [&](const Names& arguments) {
+        Names all{"-o", "s.png", "--res", "16x16"};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        const RunResult result = render(all);
+        EXPECT_EQ(result.status, 0) << result.err;
+        OIIO::ImageSpec spec;
+        return readPicture("s.png", spec);
+    };
+    const Names eye{"--eye", "0,0,9", "--lookat", "0,0,0"};
+    writeText(mFolder / "lens.cfg", "fov = 20\neye = 0,0,9\nlookat = 0,0,0\n");
+    EXPECT_EQ(picture({"--config", "lens.cfg", "--focal", "80"}),
+              picture({eye[0], eye[1], eye[2], eye[3], "--focal", "80"}));
+    writeText(mFolder / "lens.cfg", "focal = 20\neye = 0,0,9\nlookat = 0,0,0\n");
+    EXPECT_EQ(picture({"--config", "lens.cfg", "--fov", "30"}),
+              picture({eye[0], eye[1], eye[2], eye[3], "--fov", "30"}));
+    writeText(mFolder / "flat.cfg", "camera = orthographic\nframe = 3\n");
+    EXPECT_EQ(picture({"--config", "flat.cfg", "--camera", "perspective"}), picture({}));
+    writeText(mFolder / "light.cfg", "light = 1,0,0\n");
+    EXPECT_EQ(picture({"--config", "light.cfg", "--light-at", "0,9,0"}),
+              picture({"--light-at", "0,9,0"}));
 }
 
 TEST_F(Render, NothingSeenIsAFailure) {

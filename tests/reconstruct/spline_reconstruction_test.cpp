@@ -78,8 +78,46 @@ TEST(SplineReconstruction, IsSmoothAcrossBricks) {
     }
 }
 
+double cubicSpline(double x) {
+    const double d = std::abs(x);
+    if (d < 1) return 2.0 / 3 - d * d + 0.5 * d * d * d;
+    return d < 2 ? std::pow(2 - d, 3) / 6 : 0;
+}
+
+TEST(AveragingReconstruction, WeighsTheNodesAroundAPlace) {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    const auto grid = sampled({openvdb::Coord(-8), openvdb::Coord(40)}, 0,
+                              [&](const Vec3d&) { return uniform(random) < 0.5 ? 0 : 1; });
+    const auto average = makeAveragingReconstruction(grid);
+    for (int i = 0; i < 500; ++i) {
+        const Vec3d place(16 + 60 * (uniform(random) - 0.5), 16 + 60 * (uniform(random) - 0.5),
+                          16 + 60 * (uniform(random) - 0.5));
+        double sum = 0;
+        openvdb::CoordBBox nodes(openvdb::Coord::floor(place - Vec3d(1.0)),
+                                 openvdb::Coord::floor(place + Vec3d(2.0)));
+        for (auto node = nodes.begin(); node; ++node) {
+            const Vec3d away = (*node).asVec3d() - place;
+            sum += cubicSpline(away[0]) * cubicSpline(away[1]) * cubicSpline(away[2]) *
+                   grid->tree().getValue(*node);
+        }
+        EXPECT_NEAR(average->value(place), sum, 1e-5) << place;
+    }
+}
+
+TEST(AveragingReconstruction, IsNothingWhereNothingIsAround) {
+    const auto grid =
+        sampled({openvdb::Coord(0), openvdb::Coord(15)}, 0, [](const Vec3d&) { return 1; });
+    const auto average = makeAveragingReconstruction(grid);
+    for (double x = 17; x < 24; x += 0.25) {
+        EXPECT_NEAR(average->value(Vec3d(x, 7.3, 8.1)), 0, 1e-8) << x;
+    }
+    EXPECT_NEAR(average->value(Vec3d(7.5, 7.3, 8.1)), 1, 1e-6);
+}
+
 TEST(SplineReconstruction, NeedsAGrid) {
     EXPECT_THROW(makeSplineReconstruction(nullptr), Error);
+    EXPECT_THROW(makeAveragingReconstruction(nullptr), Error);
 }
 
 }  // namespace

@@ -206,6 +206,12 @@ TEST(SceneToImage, LetsGridsBeEmptyIfThatIsAllowed) {
     const RenderResult empty = sceneToImage(scene, options);
     EXPECT_EQ(empty.hits, 0);
     EXPECT_LT((colorAt(empty.image, 2, 2) - Vec3d(0.1, 0.2, 0.3)).length(), 1e-7);
+    // A frame of a sequence without an object has the same environment as the others.
+    scene.environment.visible = true;
+    scene.environment.color = Vec3d(0.7, 0.6, 0.5);
+    const Image around = sceneToImage(scene, options).image;
+    EXPECT_LT((colorAt(around, 2, 2) - Vec3d(0.7, 0.6, 0.5)).length(), 1e-7);
+    EXPECT_EQ(around.color[3], 1);
 }
 
 TEST(SceneToImage, PutsTheBackgroundWhereNothingIsAndTheEnvironmentIfItIsSeen) {

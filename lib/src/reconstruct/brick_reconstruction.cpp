@@ -132,4 +132,11 @@ std::unique_ptr<Reconstruction> makeSplineReconstruction(
                                                  cacheBytes);
 }
 
+std::unique_ptr<Reconstruction> makeAveragingReconstruction(openvdb::FloatGrid::ConstPtr grid,
+                                                            std::size_t cacheBytes) {
+    requireGrid(grid);
+    return std::make_unique<BrickReconstruction>(std::move(grid), splineAverage(), std::nullopt,
+                                                 cacheBytes);
+}
+
 }  // namespace bandvox

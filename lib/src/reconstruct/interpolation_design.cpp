@@ -256,4 +256,8 @@ InterpolationDesign splineInterpolation() {
     return {SpreadingKernel::cubicSpline(), std::move(prefilter)};
 }
 
+InterpolationDesign splineAverage() {
+    return {SpreadingKernel::cubicSpline(), {1.0}};
+}
+
 }  // namespace bandvox

@@ -31,4 +31,7 @@ InterpolationDesign designInterpolation(const ExponentialFilter& filter, double 
 /// The cubic B-spline through the lattice's values, to a float's precision.
 InterpolationDesign splineInterpolation();
 
+/// The cubic B-spline whose coefficients are the lattice's values.
+InterpolationDesign splineAverage();
+
 }  // namespace bandvox

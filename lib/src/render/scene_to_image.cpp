@@ -229,7 +229,9 @@ RenderResult sceneToImage(const Scene& scene, const PictureOptions& options, Pro
         }
         throw Error(ErrorKind::Result, "nothing to see: no object has a density that is seen");
     }
-    if (prepared.surfaces().empty() && prepared.volumes().empty()) return emptyPicture(options);
+    const bool hasObjects = !prepared.surfaces().empty() || !prepared.volumes().empty();
+    // The environment may be seen by a camera that needs no object.
+    if (!hasObjects && needsFraming(options.camera)) return emptyPicture(options);
     const Camera camera = makeCamera(scene, options);
     const Lamps lamps(scene.lights, camera);
     const LightPaths paths(prepared, lamps, options);

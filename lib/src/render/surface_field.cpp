@@ -126,13 +126,6 @@ std::pair<ClearDistance, ClearDistance> clearDistances(const DrawableGrid& drawa
             ClearDistance::ofSlope(std::max(maximum, iso + error), iso, steepest, error)};
 }
 
-// Memory for the reconstruction's bricks: what most pictures need, if the machine has it.
-std::size_t cacheBytes(const PictureOptions& options) {
-    if (options.cacheBytes > 0) return options.cacheBytes;
-    constexpr std::int64_t kLeast = std::int64_t(64) << 20, kMost = std::int64_t(2) << 30;
-    return static_cast<std::size_t>(std::clamp(availableMemory() / 4, kLeast, kMost));
-}
-
 // Sharp filters keep more than can be read between the nodes to a fine tolerance: then read them as
 // well as can be.
 std::unique_ptr<Reconstruction> readFiltered(const openvdb::FloatGrid::ConstPtr& grid,
@@ -151,6 +144,12 @@ std::unique_ptr<Reconstruction> readFiltered(const openvdb::FloatGrid::ConstPtr&
 }
 
 }  // namespace
+
+std::size_t cacheBytes(const PictureOptions& options) {
+    if (options.cacheBytes > 0) return options.cacheBytes;
+    constexpr std::int64_t kLeast = std::int64_t(64) << 20, kMost = std::int64_t(2) << 30;
+    return static_cast<std::size_t>(std::clamp(availableMemory() / 4, kLeast, kMost));
+}
 
 DrawableGrid makeDrawable(const openvdb::FloatGrid::ConstPtr& grid,
                           const std::optional<double>& iso) {

@@ -41,6 +41,9 @@ struct SurfaceField {
 SurfaceField readSurface(const DrawableGrid& drawable, double maximum,
                          const PictureOptions& options);
 
+/// Bytes for a reconstruction's bricks: what most pictures need, if the machine has it.
+std::size_t cacheBytes(const PictureOptions& options);
+
 /// A lattice as a continuous field: by the filter that its metadata name, or else by the cubic
 /// spline. `mostlyRead` is as for makeBrickReconstruction. Throws Error(ErrorKind::Input) if the
 /// filter leaves too much to be read.

@@ -14,16 +14,15 @@ namespace {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-// Values of the lattice act on places this many voxels beyond them, farther off only as the ripples
-// of a spline, less than 0.004 of a step.
+// Values of the lattice act on places this many voxels beyond them, farther off only as ripples,
+// less than 0.004 of a step.
 constexpr int kReach = 3;
 
-// Densities below this part of the highest stop no light to speak of beside it.
+// Densities below this part of the highest are nothing beside it.
 constexpr float kNoDensity = 1e-5F;
 
-// Interpolation by cubic splines multiplies values by 1.549 at most along each axis; those from 0
-// to 1 reach half of 1 + 1.549³.
-constexpr double kSplineRise = 2.36;
+// Averages do not rise, but for rounding.
+constexpr double kAverageRise = 1.0001;
 
 // What interpolation to a tolerance adds.
 constexpr double kRiseMargin = 1.01;
@@ -59,7 +58,7 @@ void forNeighbours(const openvdb::Coord& local, const Visitor& visit) {
 // between eight of them. For a Gaussian, g(x) / g(x - h) is what a sum of such points obeys as
 // well, as long as none is negative; for others it is what solids do not exceed.
 double riseAboveNodes(const std::optional<ExponentialFilter>& filter) {
-    if (!filter) return kSplineRise;
+    if (!filter) return kAverageRise;
     constexpr int kFrequencies = 512;
     const double farthest = 0.5 * std::sqrt(3.0);
     double there = 0, atNodes = 0;
@@ -95,7 +94,7 @@ openvdb::Coord neighbourOf(const openvdb::Coord& block, int i) {
 }  // namespace
 
 VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid,
-                           const std::optional<ExponentialFilter>& filter)
+                           const std::optional<ExponentialFilter>& filter, double least)
     : mBlocks(0) {
     const auto rise = static_cast<float>(riseAboveNodes(filter));
 
@@ -140,12 +139,12 @@ VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid,
     float highest = 0;
     for (const Tile& marked : tiles) highest = std::max(highest, marked.most);
     for (const LeafMaxima& leaf : found) highest = std::max(highest, leaf.most[13]);
-    const float least = kNoDensity * highest;
+    const float nothing = std::min(kNoDensity * highest, static_cast<float>(least));
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         mFinite = mFinite && found[i].finite;
         const openvdb::Coord block = leaves[i]->origin() >> kLog2;
         for (int n = 0; n < 27; ++n) {
-            if (found[i].most[n] > least) raise(neighbourOf(block, n), rise * found[i].most[n]);
+            if (found[i].most[n] > nothing) raise(neighbourOf(block, n), rise * found[i].most[n]);
         }
     }
     mBox = boxOfBlocks(mBlocks);

@@ -18,9 +18,11 @@ class VolumeBlocks {
     static constexpr int kLog2 = 3;
     static constexpr int kSide = 1 << kLog2;  ///< of a block, voxels
 
-    /// `filter`: what the lattice was filtered with; without, it is read by the cubic spline. The
-    /// background of `grid` is 0.
-    VolumeBlocks(const openvdb::FloatGrid& grid, const std::optional<ExponentialFilter>& filter);
+    /// `filter`: what the lattice was filtered with; without, it is read by averages. `least`: a
+    /// density that stops no light to speak of; of densities below it, those are left out that are
+    /// nothing beside the highest, too. The background of `grid` is 0.
+    VolumeBlocks(const openvdb::FloatGrid& grid, const std::optional<ExponentialFilter>& filter,
+                 double least);
 
     bool empty() const { return mBox.empty(); }
     /// False if a value of the lattice is not finite, or so large that sums of them are not.

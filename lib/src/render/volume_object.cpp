@@ -20,6 +20,9 @@ namespace {
 // this.
 constexpr double kChosenDepth = 10;
 
+// What stops less than this of light, through the longest side of the box, is not seen.
+constexpr double kNoDepth = 1e-4;
+
 // Kelvin, beyond which a temperature is none.
 constexpr float kHottest = 1e9F;
 
@@ -27,10 +30,17 @@ openvdb::Mat4d indexOfWorld(const openvdb::FloatGrid& grid) {
     return grid.transform().baseMap()->getAffineMap()->getMat4().inverse();
 }
 
-double chooseExtinction(const openvdb::FloatGrid& grid, const Medium& medium) {
-    if (medium.extinction > 0) return medium.extinction;
+double longestSide(const openvdb::FloatGrid& grid) {
     const Vec3d size = worldBox(grid).extents();
-    return kChosenDepth / std::max({size[0], size[1], size[2]});
+    return std::max({size[0], size[1], size[2]});
+}
+
+// What nobody has band-limited may jump, and interpolated would ring where there is nothing.
+std::unique_ptr<Reconstruction> readVolume(const openvdb::FloatGrid::ConstPtr& grid,
+                                           const std::optional<DensityMetadata>& metadata,
+                                           const PictureOptions& options) {
+    if (!metadata) return makeAveragingReconstruction(grid, cacheBytes(options));
+    return readLattice(grid, metadata, options);
 }
 
 }  // namespace
@@ -51,14 +61,15 @@ VolumeObject::VolumeObject(const SceneObject& object, const PictureOptions& opti
                                           std::to_string(mGrid->background()) +
                                           "; expected 0, for a volume that ends");
     }
-    mExtinction = chooseExtinction(*mGrid, mMedium);
+    const double longest = longestSide(*mGrid);
+    mExtinction = mMedium.extinction > 0 ? mMedium.extinction : kChosenDepth / longest;
     const auto metadata = densityMetadata(*mGrid);
     mIsBandLimited = metadata.has_value();
     std::optional<ExponentialFilter> filter;
     if (metadata) filter = ExponentialFilter{metadata->order, metadata->cutoff};
-    mBlocks = std::make_unique<VolumeBlocks>(*mGrid, filter);
+    mBlocks = std::make_unique<VolumeBlocks>(*mGrid, filter, kNoDepth / (mExtinction * longest));
     if (!mBlocks->finite()) failNotFinite(*mGrid);
-    mDensity = readLattice(mGrid, metadata, options);
+    mDensity = readVolume(mGrid, metadata, options);
     if (object.colors) mColors.emplace(object.colors);
     if (!object.temperatures) return;
     requireDrawable(*object.temperatures);
@@ -66,7 +77,7 @@ VolumeObject::VolumeObject(const SceneObject& object, const PictureOptions& opti
         if (!(std::abs(*kelvin) <= kHottest)) failNotFinite(*object.temperatures);
     }
     mToTemperature = indexOfWorld(*object.temperatures);
-    mTemperature = readLattice(object.temperatures, densityMetadata(*object.temperatures), options);
+    mTemperature = readVolume(object.temperatures, densityMetadata(*object.temperatures), options);
 }
 
 bool VolumeObject::glows() const {

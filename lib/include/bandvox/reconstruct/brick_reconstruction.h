@@ -51,4 +51,12 @@ std::unique_ptr<Reconstruction> makeSplineReconstruction(
     openvdb::FloatGrid::ConstPtr grid, std::size_t cacheBytes = 512u << 20,
     const std::optional<DensityBand>& mostlyRead = std::nullopt);
 
+/// Averages of the values of a lattice that nobody has band-limited, weighted by the cubic
+/// B-spline, in the same bricks: nothing is beyond the values of the 64 nodes around a place, so
+/// that what is empty stays so, and nothing rings; an edge gets wider, by a variance of a third of
+/// a voxel squared. The integral is that of the values. Inactive voxels and tiles count as they
+/// are. Throws Error(ErrorKind::Usage) if `grid` is null.
+std::unique_ptr<Reconstruction> makeAveragingReconstruction(openvdb::FloatGrid::ConstPtr grid,
+                                                            std::size_t cacheBytes = 512u << 20);
+
 }  // namespace bandvox
