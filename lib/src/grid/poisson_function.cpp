@@ -17,7 +17,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -189,9 +188,7 @@ double valueIn(const Cell& cell, const Kernel::Point_3& place) {
 struct PoissonFunction::Implementation {
     explicit Implementation(const std::vector<Oriented>& points, Progress& progress)
         : spacing(CGAL::compute_average_spacing<CGAL::Sequential_tag>(
-              points, kNeighbors,
-              CGAL::parameters::point_map(PointOf()).callback(
-                  std::function<bool(double)>([&](double) { return !progress.interrupted(); })))),
+              points, kNeighbors, CGAL::parameters::point_map(PointOf()))),
           function(points.begin(), points.end(), PointOf(), NormalOf(),
                    InsertionVisitor(progress)) {}
 
