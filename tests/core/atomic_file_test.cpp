@@ -129,6 +129,31 @@ TEST_F(AtomicFileTest, PassesNoSetUserIdOn) {
     EXPECT_EQ(fs::status(folder / "a.vdb").permissions(), fs::perms(0755));
 }
 
+TEST_F(AtomicFileTest, GoesOnWhileItIsBroughtToTheDisk) {
+    AtomicFile file(folder / "a");
+    file.beginSync();  // there is nothing yet
+    std::string whole;
+    {
+        std::ofstream stream = file.open();
+        for (int part = 0; part < 64; ++part) {
+            const std::string text(100000, static_cast<char>('0' + part % 10));
+            stream << text << std::flush;
+            file.beginSync();
+            whole += text;
+        }
+    }
+    file.commit();
+    EXPECT_EQ(read(folder / "a"), whole);
+    EXPECT_EQ(countFiles(), 1);
+    // One that is given up while it is.
+    {
+        AtomicFile other(folder / "b");
+        other.open() << whole << std::flush;
+        other.beginSync();
+    }
+    EXPECT_EQ(countFiles(), 1);
+}
+
 TEST_F(AtomicFileTest, CompletedFileHasNotItsNameYet) {
     write(folder / "a.vdb", "old");
     AtomicFile file(folder / "a.vdb");

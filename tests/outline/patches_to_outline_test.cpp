@@ -93,6 +93,15 @@ TEST(PatchesToOutline, DoesNotDependOnTheNumberOfThreads) {
     }
 }
 
+// A line of meeting that turns back within a few hundredths of a millimetre: cubics may bulge
+// between the points that hold them.
+TEST(PatchesToOutline, KeepsToACurveThatTurnsBackSharply) {
+    const PatchModel model{twoTeapots(), {"a", "b"}, {}};
+    const double azimuth = 2 * std::numbers::pi * 20.2 / 26;
+    const OutlineOptions options = viewFrom(azimuth, 1, true);
+    EXPECT_LE(largestDistance(patchesToOutline(model, options), model, options), options.tolerance);
+}
+
 TEST(PatchesToOutline, KeepsToTheTrueCurves) {
     for (const Scene& scene : {Scene{"teapot", teapot()}, Scene{"two tori", twoTori()}}) {
         const PatchModel model{scene.patches, {"a", "b"}, {}};

@@ -113,8 +113,8 @@ openvdb::Vec3d middleOf(std::span<const openvdb::Vec3d> points) {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// How far points reach from a center, to the right and upward on the plane through it, and in
-// depth. With an eye that frames them, points stand for what hides behind them there.
+// How far points reach from a center: to the right and upward, brought along the view's borders to
+// the plane through the center, and in depth.
 struct Reach {
     std::array<double, 2> low{kInfinity, kInfinity}, high{-kInfinity, -kInfinity};
     double near = kInfinity, far = -kInfinity;

@@ -23,8 +23,8 @@ struct CameraOptions {
     /// World direction that points up in the picture; default: y, or z where the view is along y.
     std::optional<openvdb::Vec3d> up;
     openvdb::Vec3d from{0.55, 0.35, 1};  ///< direction from the object to a chosen eye
-    double focal = 50;                   ///< focal length, mm; > 0 (perspective)
-    double aperture = 41.2136;           ///< width of the film, mm; > 0 (perspective)
+    double focal = 50;                   ///< focal length, mm; 1e-3 to 1e6 (perspective)
+    double aperture = 41.2136;           ///< width of the film, mm; 1e-3 to 1e6 (perspective)
     double frame = 0;                    ///< width of the view, world; 0 fits (orthographic)
 };
 
