@@ -13,6 +13,35 @@ namespace {
 constexpr std::size_t kFewSamples = 1 << 17;
 constexpr std::size_t kSamplesTogether = 2048;
 
+// The factor along x of a difference of neighbours, (1 - e^{-2πik}) / (2πik), or 1.
+std::vector<std::complex<float>> factorsAlongX(int side, TileFilter::Output output) {
+    std::vector<std::complex<float>> factors;
+    for (int i = 0; i < side; ++i) {
+        const double k = static_cast<double>(i <= side / 2 ? i : i - side) / side;
+        const std::complex<double> turn(0, 2 * std::numbers::pi * k);
+        const bool isOne = i == 0 || output == TileFilter::Output::Values;
+        factors.emplace_back(isOne ? 1.0 : (1.0 - std::exp(-turn)) / turn);
+    }
+    return factors;
+}
+
+// H(|k|) over the kernel's transform along each axis; 0 at Nyquist, where frequencies have no sign.
+PackedFilter transferOf(const TilePlan& plan, TileFilter::Output output) {
+    const int side = plan.side, half = side / 2;
+    std::vector<double> kernel;
+    for (int i = 0; i <= half; ++i) {
+        kernel.push_back(plan.kernel.transform(static_cast<double>(i) / side));
+    }
+    // A packed transform and its inverse make side³ / 2 of what was there.
+    const double scale = 2 / std::pow(side, 3);
+    const auto transfer = [&](int x, int y, int z) {
+        if (std::max({x, y, z}) == half) return 0.0;
+        const double k = std::sqrt(static_cast<double>(x * x + y * y + z * z)) / side;
+        return scale * plan.filter(k) / (kernel[x] * kernel[y] * kernel[z]);
+    };
+    return {side, transfer, true, factorsAlongX(side, output)};
+}
+
 }  // namespace
 
 TileFilter::TileFilter(const TilePlan& plan, Output output)
@@ -21,40 +50,8 @@ TileFilter::TileFilter(const TilePlan& plan, Output output)
       mMargin(mShift + (plan.kernel.width() + 1) / 2 + 1),
       mFirst(mShift + plan.halo),
       mFft(RealFft3::get(plan.side, mMargin, mShift + plan.kernel.paddedWidth() + 1,
-                         plan.interior + 1)) {
-    const int side = plan.side;
-    const int half = side / 2;
-
-    // Tabulate the difference along x; k is signed.
-    mDifference.resize(2 * side);
-    for (int i = 0; i < side; ++i) {
-        const double k = static_cast<double>(i <= half ? i : i - side) / side;
-        const std::complex<double> turn(0, 2 * std::numbers::pi * k);
-        const bool isOne = i == 0 || output == Output::Values;
-        const std::complex<double> d = isOne ? 1.0 : (1.0 - std::exp(-turn)) / turn;
-        mDifference[2 * i] = static_cast<float>(d.real());
-        mDifference[2 * i + 1] = static_cast<float>(d.imag());
-    }
-
-    // Tabulate the transfer function over the kernel's transform, on one octant.
-    const auto frequency = [side](int i) { return static_cast<double>(i) / side; };
-    const auto isNyquist = [side](int i) { return 2 * i == side; };
-    std::vector<double> kernel(half + 1);
-    for (int i = 0; i <= half; ++i) kernel[i] = plan.kernel.transform(frequency(i));
-    const double scale = 1.0 / (static_cast<double>(side) * side * side);
-    mTransfer.reserve(static_cast<std::size_t>(half + 1) * (half + 1) * (half + 1));
-    for (int x = 0; x <= half; ++x) {
-        for (int y = 0; y <= half; ++y) {
-            for (int z = 0; z <= half; ++z) {
-                const double k = std::sqrt(static_cast<double>(x * x + y * y + z * z)) / side;
-                const bool zero = isNyquist(x) || isNyquist(y) || isNyquist(z);
-                const double value =
-                    zero ? 0 : scale * plan.filter(k) / (kernel[x] * kernel[y] * kernel[z]);
-                mTransfer.push_back(static_cast<float>(value));
-            }
-        }
-    }
-}
+                         plan.interior + 1, SpectrumLayout::Packed)),
+      mTransfer(transferOf(plan, output)) {}
 
 openvdb::Vec3d TileFilter::regionOffset() const {
     // Along x a difference at the first voxel reaches one voxel further back.
@@ -143,7 +140,7 @@ void TileFilter::movePairs(const openvdb::CoordBBox& nodes, float* part,
 void TileFilter::apply(float* buffer) const {
     fold(buffer);
     mFft.forward(buffer);
-    multiply(buffer);
+    mTransfer.multiply(mFft, buffer);
     mFft.inverse(buffer, mFirst);
 }
 
@@ -166,30 +163,6 @@ void TileFilter::fold(float* buffer) const {
         for (int y = 0; y < side; ++y) {
             float* row = rows + y * zStride;
             addRow(row, row + side, std::min(zStride - side, side));
-        }
-    }
-}
-
-void TileFilter::multiply(float* buffer) const {
-    const int side = mPlan.side;
-    const int half = side / 2;
-    const int count = half + 1;
-    for (int x = 0; x < side; ++x) {
-        const float dr = mDifference[2 * x];
-        const float di = mDifference[2 * x + 1];
-        const int ax = x <= half ? x : side - x;
-        for (int y = 0; y < side; ++y) {
-            const int ay = y <= half ? y : side - y;
-            const float* transfer =
-                mTransfer.data() + (static_cast<std::size_t>(ax) * count + ay) * count;
-            float* row =
-                buffer + (static_cast<std::size_t>(x) * mFft.yCount() + y) * mFft.zStride();
-            for (int z = 0; z < count; ++z) {
-                const float re = row[2 * z];
-                const float im = row[2 * z + 1];
-                row[2 * z] = transfer[z] * (re * dr - im * di);
-                row[2 * z + 1] = transfer[z] * (re * di + im * dr);
-            }
         }
     }
 }

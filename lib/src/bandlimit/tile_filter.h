@@ -3,6 +3,7 @@
 #include "bandlimit/spread_samples.h"
 #include "bandlimit/tile_plan.h"
 #include "spectral/fft.h"
+#include "spectral/packed_filter.h"
 
 #include <array>
 #include <span>
@@ -63,16 +64,13 @@ class TileFilter {
     void movePairs(const openvdb::CoordBBox& nodes, float* part,
                    const std::array<float*, 2>& buffers) const;
     void fold(float* buffer) const;
-    void multiply(float* buffer) const;
 
     const TilePlan& mPlan;
     int mShift;   // nodes before the region, for the kernel's left half
     int mMargin;  // nodes behind it, for the shift and its right half
     int mFirst;   // where the interior begins in y and z
     const RealFft3& mFft;
-    // [side][2], complex: (1 - e^{-2πik}) / (2πik) along x for differences, else 1
-    std::vector<float> mDifference;
-    std::vector<float> mTransfer;  // [side/2 + 1]³: H(|k|) / (ψ̂ ψ̂ ψ̂) / side³, Nyquist 0
+    PackedFilter mTransfer;
 };
 
 }  // namespace bandvox

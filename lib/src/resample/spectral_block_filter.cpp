@@ -69,10 +69,12 @@ SpectralBlockFilter::SpectralBlockFilter(const LatticeMap& map, const LatticeFil
       mIsAligned(map.isAligned()),
       mIsDiagonal(map.isDiagonal()),
       mDesign(design(map, filter)),
-      mFft(RealFft3::get(chooseSide(
-          map, mReach += mIsAligned ? 0 : mDesign.reach() + mDesign.kernel.width() / 2 + 1))) {
+      mFft(RealFft3::get(
+          chooseSide(map,
+                     mReach += mIsAligned ? 0 : mDesign.reach() + mDesign.kernel.width() / 2 + 1),
+          0, 0, 0, SpectrumLayout::Packed)),
+      mTransfer(transferOf(filter)) {
     mBlockSide = largestBlock(map, mFft.size(), mReach);
-    tabulate(filter);
 }
 
 // The side that costs least for a surface, which meets as many blocks as their faces are small.
@@ -135,51 +137,32 @@ SourceCube SpectralBlockFilter::sourceCube(const openvdb::Coord& block) const {
             mFft.zStride()};
 }
 
-void SpectralBlockFilter::tabulate(const LatticeFilter& filter) {
+PackedFilter SpectralBlockFilter::transferOf(const LatticeFilter& filter) const {
     const int side = mFft.size(), half = side / 2;
-    const auto frequency = [&](int i) { return double(i <= half ? i : i - side) / side; };
-    // The response of the prefilter along an axis.
-    std::vector<double> reading(side, 1.0);
-    for (int i = 0; !mIsAligned && i < side; ++i) {
+    // The response of the prefilter along an axis, by the frequency's magnitude.
+    std::vector<double> reading(half + 1, 1.0);
+    for (int i = 0; !mIsAligned && i <= half; ++i) {
         double sum = mDesign.prefilter[0];
         for (int l = 1; l <= mDesign.reach(); ++l) {
-            sum += 2 * mDesign.prefilter[l] * std::cos(2 * std::numbers::pi * frequency(i) * l);
+            sum += 2 * mDesign.prefilter[l] * std::cos(2 * std::numbers::pi * i * l / side);
         }
         reading[i] = sum;
     }
-    const double scale = std::pow(side, -3);
-    mTransfer.reserve(static_cast<std::size_t>(side) * side * (half + 1));
-    for (int x = 0; x < side; ++x) {
-        for (int y = 0; y < side; ++y) {
-            const double factor = scale * reading[x] * reading[y];
-            for (int z = 0; z <= half; ++z) {
-                const openvdb::Vec3d k(frequency(x), frequency(y), frequency(z));
-                mTransfer.push_back(static_cast<float>(factor * reading[z] * filter(mMap, k)));
-            }
-        }
-    }
-}
-
-void SpectralBlockFilter::multiply(float* cube) const {
-    const int side = mFft.size(), count = side / 2 + 1;
-    const float* transfer = mTransfer.data();
-    for (int x = 0; x < side; ++x) {
-        for (int y = 0; y < side; ++y) {
-            float* row = cube + (static_cast<std::size_t>(x) * mFft.yCount() + y) * mFft.zStride();
-            for (int z = 0; z < count; ++z) {
-                row[2 * z] *= transfer[z];
-                row[2 * z + 1] *= transfer[z];
-            }
-            transfer += count;
-        }
-    }
+    // A packed transform and its inverse make side³ / 2 of what was there.
+    const double scale = 2 / std::pow(side, 3);
+    const auto transfer = [&](int x, int y, int z) {
+        const openvdb::Vec3d k = openvdb::Vec3d(x, y, z) / side;
+        return scale * reading[std::abs(x)] * reading[std::abs(y)] * reading[std::abs(z)] *
+               filter(mMap, k);
+    };
+    return {side, transfer, false};
 }
 
 void SpectralBlockFilter::apply(const openvdb::Coord& block, Scratch& scratch,
                                 std::span<float> values) const {
     float* cube = scratch.cube.get();
     mFft.forward(cube);
-    multiply(cube);
+    mTransfer.multiply(mFft, cube);
     mFft.inverse(cube);
     if (mIsDiagonal && !mIsAligned) {
         const openvdb::Coord low = sourceBox(block).min();

@@ -2,6 +2,7 @@
 
 #include "reconstruct/interpolation_design.h"
 #include "resample/block_filter.h"
+#include "spectral/packed_filter.h"
 
 namespace bandvox {
 
@@ -21,15 +22,14 @@ class SpectralBlockFilter final : public BlockFilter {
 
   private:
     static int chooseSide(const LatticeMap& map, int reach);
-    void tabulate(const LatticeFilter& filter);
-    void multiply(float* cube) const;
+    PackedFilter transferOf(const LatticeFilter& filter) const;
     AxisTaps tapsAlong(int axis, const openvdb::Coord& block, int cubeOrigin) const;
 
     bool mIsAligned;   // target voxels are source voxels: nothing is to be read between them
     bool mIsDiagonal;  // between them it is read along one axis after the other
     InterpolationDesign mDesign;
     const RealFft3& mFft;
-    std::vector<float> mTransfer;  // [side][side][side/2 + 1]
+    PackedFilter mTransfer;
 };
 
 }  // namespace bandvox
