@@ -1,9 +1,13 @@
+#include "core/sha256_blocks.h"
+
 #include <bandvox/core/error.h>
 #include <bandvox/core/sha256.h>
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <random>
+#include <vector>
 
 namespace bandvox {
 namespace {
@@ -15,6 +19,18 @@ TEST(Sha256, GivesThePublishedDigests) {
               "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
     EXPECT_EQ(sha256(std::string(1000000, 'a')),
               "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST(Sha256, IsTheSameOnAnyProcessor) {
+    std::mt19937 random(5);
+    std::vector<unsigned char> blocks(7 * kSha256BlockBytes);
+    for (unsigned char& byte : blocks) byte = static_cast<unsigned char>(random());
+    for (std::size_t count = 0; count <= 7; ++count) {
+        Sha256State a{1, 2, 3, 4, 5, 6, 7, 0xfedcba98}, b = a;
+        addSha256Blocks(a, blocks.data(), count);
+        addSha256BlocksAnywhere(b, blocks.data(), count);
+        EXPECT_EQ(a, b) << count;
+    }
 }
 
 TEST(Sha256, DoesNotDependOnThePieces) {
