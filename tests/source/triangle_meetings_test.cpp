@@ -186,6 +186,31 @@ TEST(BoxPairs, OfTrianglesAllInOnePlaceAreAllPairs) {
     EXPECT_EQ(pairs.size(), 40U * 39 / 2);
 }
 
+TEST(BoxPairs, LeaveOutTrianglesThatShareASettledPoint) {
+    const Mesh mesh = crumpledBall(3, 0.05);
+    std::vector<std::uint8_t> settled(mesh.points.size());
+    for (std::size_t p = 0; p < settled.size(); ++p) settled[p] = p % 3 == 0 ? 1 : 0;
+    const auto pairsOf = [](const BoxPairs& boxes) {
+        std::vector<Pair> pairs;
+        for (std::size_t leaf = 0; leaf < boxes.leafCount(); ++leaf) boxes.appendPairs(leaf, pairs);
+        return std::set<Pair>(pairs.begin(), pairs.end());
+    };
+    std::set<Pair> expected = pairsOf(BoxPairs(mesh));
+    const std::size_t all = expected.size();
+    std::erase_if(expected, [&](const Pair& pair) {
+        const Vec3I &a = mesh.triangles[pair.first], &b = mesh.triangles[pair.second];
+        for (int i = 0; i < 3; ++i) {
+            for (int k = 0; k < 3; ++k) {
+                if (a[i] == b[k] && settled[a[i]] != 0) return true;
+            }
+        }
+        return false;
+    });
+    EXPECT_GT(all, expected.size());
+    EXPECT_FALSE(expected.empty());
+    EXPECT_EQ(pairsOf(BoxPairs(mesh, settled)), expected);
+}
+
 TEST(UnfoldedStars, HaveNoMeetings) {
     std::size_t unfolded = 0, others = 0;
     for (unsigned seed = 0; seed < 20; ++seed) {

@@ -3,6 +3,7 @@
 #include "core/instruction_sets.h"
 #include "source/index_blocks.h"
 #include "source/mesh_bounds.h"
+#include "source/no_index.h"
 #include "source/triangle_order.h"
 
 #include <algorithm>
@@ -19,7 +20,7 @@ constexpr std::size_t kChildren = 4;
 
 }  // namespace
 
-/// Finds, for each box of a leaf, the bits of the boxes of another leaf that it meets.
+/// Finds, for each triangle of a leaf, the bits of those of another leaf that it makes a pair with.
 BANDVOX_FOR_EACH_INSTRUCTION_SET
 void BoxPairs::findMeeting(const Leaf& a, const Leaf& b, const Box& boxOfB,
                            std::array<std::uint32_t, kLeaf>& meets) {
@@ -33,6 +34,19 @@ void BoxPairs::findMeeting(const Leaf& a, const Leaf& b, const Box& boxOfB,
         }
         return bits;
     };
+    // Those that share a settled corner; as kNoIndex stands for others in b, in a something else
+    // has to.
+    const auto findSettled = [](const Leaf& leaf, const std::uint32_t* corners) {
+        std::uint32_t bits = 0;
+        for (int k = 0; k < kLeaf; ++k) {
+            bool same = false;
+            for (int i = 0; i < 3; ++i) {
+                for (int j = 0; j < 3; ++j) same |= leaf.settled[i][k] == corners[j];
+            }
+            bits |= same ? 1U << k : 0U;
+        }
+        return bits;
+    };
     meets.fill(0);
     std::uint32_t near = findBits(a, boxOfB.low.data(), boxOfB.high.data());
     for (; near != 0; near &= near - 1) {
@@ -40,22 +54,16 @@ void BoxPairs::findMeeting(const Leaf& a, const Leaf& b, const Box& boxOfB,
         const float low[] = {a.low[0][i], a.low[1][i], a.low[2][i]};
         const float high[] = {a.high[0][i], a.high[1][i], a.high[2][i]};
         meets[i] = findBits(b, low, high);
+        if (meets[i] == 0) continue;
+        std::uint32_t corners[3];
+        for (int k = 0; k < 3; ++k) {
+            corners[k] = a.settled[k][i] == kNoIndex ? kNoIndex - 1 : a.settled[k][i];
+        }
+        meets[i] &= ~findSettled(b, corners);
     }
 }
 
-bool BoxPairs::Box::meets(const Box& other) const {
-    return low[0] <= other.high[0] && high[0] >= other.low[0] && low[1] <= other.high[1] &&
-           high[1] >= other.low[1] && low[2] <= other.high[2] && high[2] >= other.low[2];
-}
-
-void BoxPairs::Box::expand(const Box& other) {
-    for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], other.low[axis]);
-        high[axis] = std::max(high[axis], other.high[axis]);
-    }
-}
-
-BoxPairs::BoxPairs(const Mesh& mesh) {
+BoxPairs::BoxPairs(const Mesh& mesh, const std::vector<std::uint8_t>& settled) {
     const std::vector<std::uint32_t> order = orderAlongCurve(mesh);
     // Relative to the middle, so that single precision is enough far from the origin, too.
     const openvdb::Vec3d middle =
@@ -69,10 +77,14 @@ BoxPairs::BoxPairs(const Mesh& mesh) {
         for (int k = 0; k < kLeaf; ++k) {
             Box box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
             leaf.triangle[k] = 0;
+            for (auto& corner : leaf.settled) corner[k] = kNoIndex;
             if (k < leaf.count) {
                 leaf.triangle[k] = order[i * kLeaf + k];
                 const openvdb::Vec3I& t = mesh.triangles[leaf.triangle[k]];
                 for (int corner = 0; corner < 3; ++corner) {
+                    if (!settled.empty() && settled[t[corner]] != 0) {
+                        leaf.settled[corner][k] = t[corner];
+                    }
                     const openvdb::Vec3f p(mesh.points[t[corner]] - middle);
                     const std::array<float, 3> place = {p.x(), p.y(), p.z()};
                     box.expand({place, place});

@@ -2,6 +2,7 @@
 
 #include <bandvox/source/mesh.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +21,9 @@ class BoxPairs {
     using Pair = std::pair<std::uint32_t, std::uint32_t>;
     static constexpr int kLeaf = 16;
 
-    explicit BoxPairs(const Mesh& mesh);
+    /// `settled`, if not empty, has a number for each point of the mesh; triangles that share one
+    /// which is not 0 make no pair.
+    explicit BoxPairs(const Mesh& mesh, const std::vector<std::uint8_t>& settled = {});
 
     std::size_t leafCount() const { return mLeaves.size(); }
 
@@ -31,12 +34,21 @@ class BoxPairs {
   private:
     struct Box {
         std::array<float, 3> low, high;
-        bool meets(const Box& other) const;
-        void expand(const Box& other);
+        bool meets(const Box& other) const {
+            return low[0] <= other.high[0] && high[0] >= other.low[0] && low[1] <= other.high[1] &&
+                   high[1] >= other.low[1] && low[2] <= other.high[2] && high[2] >= other.low[2];
+        }
+        void expand(const Box& other) {
+            for (int axis = 0; axis < 3; ++axis) {
+                low[axis] = std::min(low[axis], other.low[axis]);
+                high[axis] = std::max(high[axis], other.high[axis]);
+            }
+        }
     };
     struct alignas(64) Leaf {
         float low[3][kLeaf];
         float high[3][kLeaf];
+        std::uint32_t settled[3][kLeaf];  // corners that are; kNoIndex in place of others
         std::uint32_t triangle[kLeaf];
         int count;
     };

@@ -194,19 +194,17 @@ class QuickTest {
           mUnfolded(findUnfoldedStars(mesh, mFacings)) {}
 
     const std::vector<std::uint8_t>& facings() const { return mFacings; }
+    /// Triangles that share a point which is not 0 here meet nowhere else.
+    const std::vector<std::uint8_t>& unfolded() const { return mUnfolded; }
 
+    /// Of triangles that share none of these points.
     bool areSurelyApart(const Pair& pair) const {
         const auto [a, b] = pair;
-        bool share = false;
         for (int i = 0; i < 3; ++i) {
             for (int j = 0; j < 3; ++j) {
-                const std::uint32_t point = mMesh.triangles[a][i];
-                if (point != mMesh.triangles[b][j]) continue;
-                if (mUnfolded[point] != 0) return true;
-                share = true;
+                if (mMesh.triangles[a][i] == mMesh.triangles[b][j]) return false;
             }
         }
-        if (share) return false;
         const Corners ofA = corners(a), ofB = corners(b);
         for (int axis = 0; axis < 3; ++axis) {
             if (isEdgeBetween(ofA, mFacings[a], ofB, axis)) return true;
@@ -257,7 +255,7 @@ std::vector<TriangleMeeting> findMeetings(const Mesh& mesh, Progress& progress) 
     const QuickTest quick(mesh);
     const MeetingTest test(mesh, quick.facings());
     progress.throwIfInterrupted();
-    const BoxPairs boxes(mesh);
+    const BoxPairs boxes(mesh, quick.unfolded());
     constexpr std::size_t kLeavesOfTask = 256;
     const std::size_t tasks = (boxes.leafCount() + kLeavesOfTask - 1) / kLeavesOfTask;
     std::vector<std::vector<TriangleMeeting>> found(tasks);
