@@ -2,16 +2,20 @@
 
 #include "grid/spooled_grid.h"
 
+#include <openvdb/io/Compression.h>
 #include <openvdb/io/io.h>
 #include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <ios>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <sstream>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -49,6 +53,33 @@ class PartOutput {
     std::ostringstream mStream;
 };
 
+// Puts the active values of a leaf behind each other. Returns how many there are; none if an
+// inactive one is not the background.
+std::optional<openvdb::Index> gatherActive(const openvdb::FloatTree::LeafNodeType& leaf,
+                                           float background, float* active) {
+    using Word = openvdb::Index64;
+    constexpr openvdb::Index kBits = 8 * sizeof(Word);
+    const float* values = leaf.buffer().data();
+    openvdb::Index count = 0;
+    bool isOther = false;
+    for (openvdb::Index n = 0; n < leaf.SIZE / kBits; ++n, values += kBits) {
+        const Word word = leaf.getValueMask().getWord<Word>(n);
+        if (word == ~Word(0)) {
+            std::copy_n(values, kBits, active + count);
+            count += kBits;
+            continue;
+        }
+        // Each is put down, and the next over it if it was not active.
+        for (openvdb::Index bit = 0; bit < kBits; ++bit) {
+            const bool isActive = (word >> bit & 1) != 0;
+            active[count] = values[bit];
+            count += isActive ? 1 : 0;
+            isOther |= !isActive && values[bit] != background;
+        }
+    }
+    return isOther ? std::nullopt : std::optional(count);
+}
+
 // A grid whose leaves are compressed by tasks, and then written in their order. OpenVDB's own
 // compresses one after another.
 template <typename Tree>
@@ -60,8 +91,13 @@ class QuickWrittenGrid final : public openvdb::Grid<Tree> {
     void writeBuffers(std::ostream& stream) const override {
         std::vector<const typename Tree::LeafNodeType*> leaves;
         this->tree().getNodes(leaves);
+        const bool half = this->saveFloatAsHalf();
         writeByAllThreads(stream, leaves.size(), [&](std::size_t i, std::ostream& part) {
-            leaves[i]->writeBuffers(part, this->saveFloatAsHalf());
+            if constexpr (std::is_same_v<Tree, openvdb::FloatTree>) {
+                writeLeaf(*leaves[i], part, half);
+            } else {
+                leaves[i]->writeBuffers(part, half);
+            }
         });
     }
 };
@@ -78,6 +114,21 @@ openvdb::GridBase::Ptr writtenQuickly(const openvdb::GridBase& grid) {
 }
 
 }  // namespace
+
+void writeLeaf(const openvdb::FloatTree::LeafNodeType& leaf, std::ostream& stream, bool half) {
+    const std::uint32_t compression = openvdb::io::getDataCompression(stream);
+    const auto* background =
+        static_cast<const float*>(openvdb::io::getGridBackgroundValuePtr(stream));
+    std::array<float, openvdb::FloatTree::LeafNodeType::SIZE> active;
+    std::optional<openvdb::Index> count;
+    if (!half && background && (compression & openvdb::io::COMPRESS_ACTIVE_MASK) != 0) {
+        count = gatherActive(leaf, *background, active.data());
+    }
+    if (!count) return leaf.writeBuffers(stream, half);
+    leaf.getValueMask().save(stream);
+    stream.put(openvdb::io::NO_MASK_OR_INACTIVE_VALS);
+    openvdb::io::writeData(stream, active.data(), *count, compression);
+}
 
 void writeByAllThreads(std::ostream& stream, std::size_t count,
                        const std::function<void(std::size_t, std::ostream&)>& writeLeaf) {

@@ -33,11 +33,12 @@ void SpooledGrid::writeBuffers(std::ostream& stream) const {
     using Leaf = LeafSpool::Leaf;
     std::vector<const Leaf*> leaves;
     tree().getNodes(leaves);
+    const bool half = saveFloatAsHalf();
     writeByAllThreads(stream, leaves.size(), [&](std::size_t i, std::ostream& part) {
         Leaf whole(leaves[i]->origin());
         whole.setValueMask(leaves[i]->getValueMask());
         mSpool->read(leaves[i]->transientData(), whole);
-        whole.writeBuffers(part, saveFloatAsHalf());
+        writeLeaf(whole, part, half);
     });
 }
 
