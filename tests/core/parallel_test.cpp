@@ -31,6 +31,36 @@ TEST(ParallelFor, PassesExceptionsOn) {
                  std::runtime_error);
 }
 
+TEST(ParallelAsMade, MakesInOrderAndCallsEachOnceWithWhatWasMade) {
+    for (const int threads : {1, 3}) {
+        const ThreadLimit limit(threads);
+        std::vector<std::int64_t> made(500, -1);
+        std::vector<std::atomic<std::int64_t>> seen(500);
+        std::int64_t next = 0;
+        parallelAsMade(
+            500,
+            [&](std::int64_t i) {
+                EXPECT_EQ(i, next++);
+                made[i] = i * i;
+            },
+            [&](std::int64_t i) { seen[i] += made[i] + 1; });
+        for (std::int64_t i = 0; i < 500; ++i) EXPECT_EQ(seen[i], i * i + 1);
+    }
+    parallelAsMade(
+        0, [](std::int64_t) { FAIL(); }, [](std::int64_t) { FAIL(); });
+}
+
+TEST(ParallelAsMade, PassesExceptionsOn) {
+    const auto nothing = [](std::int64_t) {};
+    const auto fail = [](std::int64_t i) {
+        if (i == 70) throw Error(ErrorKind::Input, "seventy");
+    };
+    EXPECT_THROW(parallelAsMade(100, nothing, fail), Error);
+    std::atomic<int> bodies = 0;
+    EXPECT_THROW(parallelAsMade(100, fail, [&](std::int64_t) { ++bodies; }), Error);
+    EXPECT_LE(bodies, 70);
+}
+
 TEST(ParallelFor, StaysWithinTheLimit) {
     const ThreadLimit limit(1);
     EXPECT_EQ(threadCount(), 1);

@@ -3,6 +3,7 @@
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
+#include <oneapi/tbb/task_group.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -37,6 +38,30 @@ void parallelFor(std::int64_t count, const std::function<void(std::int64_t)>& bo
             BANDVOX_HAPPENS_BEFORE(&finished);
         },
         oneapi::tbb::simple_partitioner());
+    BANDVOX_HAPPENS_AFTER(&finished);
+}
+
+void parallelAsMade(std::int64_t count, const std::function<void(std::int64_t)>& make,
+                    const std::function<void(std::int64_t)>& body) {
+    [[maybe_unused]] char made = 0;
+    [[maybe_unused]] char finished = 0;
+    oneapi::tbb::task_group group;
+    try {
+        for (std::int64_t i = 0; i < count; ++i) {
+            make(i);
+            BANDVOX_HAPPENS_BEFORE(&made);
+            group.run([&, i] {
+                BANDVOX_HAPPENS_AFTER(&made);
+                body(i);
+                BANDVOX_HAPPENS_BEFORE(&finished);
+            });
+        }
+    } catch (...) {
+        group.cancel();
+        group.wait();
+        throw;
+    }
+    group.wait();
     BANDVOX_HAPPENS_AFTER(&finished);
 }
 

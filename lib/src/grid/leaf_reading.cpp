@@ -60,8 +60,8 @@ void skipLeaf(std::istream& stream, bool half) {
     stream.seekg(length, std::ios::cur);
 }
 
-// A grid that finds out where in the file its leaves are, then has tasks read them. OpenVDB's own
-// reads them one after another.
+// A grid that finds out where in the file its leaves are, and has tasks read those it has found.
+// OpenVDB's own reads them one after another.
 template <typename Tree>
 class QuickGrid final : public openvdb::Grid<Tree> {
   public:
@@ -78,21 +78,28 @@ class QuickGrid final : public openvdb::Grid<Tree> {
         const bool half = this->saveFloatAsHalf();
         std::vector<Leaf*> leaves;
         this->tree().getNodes(leaves);
-        std::vector<std::streamoff> places;  // where tasks begin, and the end
-        for (std::size_t i = 0; i < leaves.size(); ++i) {
-            if (i % kLeavesPerTask == 0) places.push_back(stream.tellg());
-            skipLeaf<typename Tree::ValueType>(stream, half);
-        }
-        places.push_back(stream.tellg());
+        const std::size_t tasks = (leaves.size() + kLeavesPerTask - 1) / kLeavesPerTask;
+        std::vector<std::streamoff> places(tasks + 1);  // where tasks begin, and the end
+        places[0] = stream.tellg();
+        const auto find = [&](std::int64_t task) {
+            const std::size_t begin = static_cast<std::size_t>(task) * kLeavesPerTask;
+            const std::size_t end = std::min(begin + kLeavesPerTask, leaves.size());
+            for (std::size_t i = begin; i < end; ++i) {
+                skipLeaf<typename Tree::ValueType>(stream, half);
+            }
+            places[task + 1] = stream.tellg();
+        };
 
-        const auto metadata = openvdb::io::getStreamMetadataPtr(stream);
+        // What tasks begin with, while this thread goes on over the leaves.
+        const openvdb::io::StreamMetadata metadata = *openvdb::io::getStreamMetadataPtr(stream);
         const std::ios::iostate exceptions = stream.exceptions();
-        parallelFor(static_cast<std::int64_t>(places.size()) - 1, [&](std::int64_t task) {
+        const GuardedBuffer before(mBuffer, 0, 0, stream);
+        parallelAsMade(static_cast<std::int64_t>(tasks), find, [&](std::int64_t task) {
             std::istream part(nullptr);
-            GuardedBuffer buffer(mBuffer, places[task], places[task + 1], part);
+            GuardedBuffer buffer(before, places[task], places[task + 1], part);
             part.rdbuf(&buffer);
             part.exceptions(exceptions);
-            auto copy = std::make_shared<openvdb::io::StreamMetadata>(*metadata);
+            auto copy = std::make_shared<openvdb::io::StreamMetadata>(metadata);
             openvdb::io::setStreamMetadataPtr(part, copy, /*transfer=*/true);
             const std::size_t begin = static_cast<std::size_t>(task) * kLeavesPerTask;
             const std::size_t end = std::min(begin + kLeavesPerTask, leaves.size());

@@ -14,6 +14,12 @@ namespace bandvox {
 /// started and is rethrown here.
 void parallelFor(std::int64_t count, const std::function<void(std::int64_t)>& body);
 
+/// Calls `make(i)` for each i in [0, count), one after another on this thread, and `body(i)` once
+/// for each, on the threads of TBB, after `make(i)` has returned and while others are being made.
+/// Else as parallelFor; an exception of `make` is rethrown, too.
+void parallelAsMade(std::int64_t count, const std::function<void(std::int64_t)>& make,
+                    const std::function<void(std::int64_t)>& body);
+
 /// The number of threads that parallelFor uses at most, at least 1.
 int threadCount();
 
