@@ -112,14 +112,20 @@ RenderRequest parseRender(const CommandLine& line) {
 RenderResult draw(const RenderRequest& request, const Scene& scene, const PictureOptions& picture,
                   Progress& progress) {
     if (request.shading == Shading::Spectral) return sceneToImage(scene, picture, progress);
+    const SceneObject& object = scene.objects[0];
     RenderOptions options;
     static_cast<PictureOptions&>(options) = picture;
     options.shading = request.shading;
-    options.iso = scene.objects[0].iso;
-    options.color = scene.objects[0].material.color;
+    options.iso = object.iso;
+    options.color = object.material.color;
     options.light = scene.lights[0].place;
     options.ambient = scene.environment.color[0];
-    return densityToImage(scene.objects[0].grid, options, progress);
+    try {
+        return densityToImage(object.grid, options, progress);
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::Interrupted || error.kind() == ErrorKind::Memory) throw;
+        throw Error(error.kind(), object.name + ": " + error.what());
+    }
 }
 
 // What all pictures together took.
@@ -165,9 +171,7 @@ void drawSequence(CommandRun& run, const RenderRequest& request) {
     std::optional<Scene> scene;
     std::vector<CameraOptions> cameras;
     const bool hasInputFrames = hasFrames(request.scene);
-    for (std::size_t i = 0; i < request.frames.size(); ++i) {
-        const int frame = request.frames[i];
-        run.beginPart(i, request.frames.size());
+    const auto drawOne = [&](int frame) {
         if (!scene || hasInputFrames) {
             scene = loadScene(run, request.scene, frame);
             if (request.turns > 0) cameras = turntable(*scene, request.picture, request.turns);
@@ -179,6 +183,19 @@ void drawSequence(CommandRun& run, const RenderRequest& request) {
         run.writePart(output, [&](AtomicFile& file) {
             writeImage(file, image, request.channels, run.progress());
         });
+    };
+    for (std::size_t i = 0; i < request.frames.size(); ++i) {
+        const int frame = request.frames[i];
+        run.beginPart(i, request.frames.size());
+        try {
+            drawOne(frame);
+        } catch (const Error& error) {
+            // Wrong options are no frame's fault, nor is the user who stops the command.
+            const bool isOfFrame =
+                error.kind() != ErrorKind::Usage && error.kind() != ErrorKind::Interrupted;
+            if (!isOfFrame) throw;
+            throw Error(error.kind(), "frame " + std::to_string(frame) + ": " + error.what());
+        }
     }
     run.count("frames", request.frames.size());
     run.finish();

@@ -157,6 +157,7 @@ void readSceneFile(const CommandLine& line, const std::string& path,
         const auto grids = values.text("file");
         if (!grids) throw Error(ErrorKind::Input, values.title() + "file is missing");
         request.objects.push_back(readObject(values, file.beside(*grids)));
+        request.objects.back().place = values.title().substr(0, values.title().size() - 1);
     }
     if (request.objects.empty()) {
         throw Error(ErrorKind::Input, "'" + path + "' has no objects; expected a list of them");
@@ -219,7 +220,14 @@ void loadGrids(CommandRun& run, const ObjectRequest& request, const std::string&
     if (isVolume && request.temperatures != "none") {
         object.temperatures = findFloatGrid(grids, request.temperatures, "temperature", file);
     }
-    place(object, request.placement);
+    object.name = "'" + file + "'";
+    if (!request.place.empty()) object.name = request.place + " (" + object.name + ")";
+    try {
+        place(object, request.placement);
+    } catch (const Error& error) {
+        throw Error(request.place.empty() ? error.kind() : ErrorKind::Input,
+                    object.name + ": " + error.what());
+    }
     run.say("read     " + file + ": grid '" + object.grid->getName() + "', " +
             formatCount(static_cast<std::int64_t>(object.grid->activeVoxelCount()), "active voxel",
                         "active voxels") +

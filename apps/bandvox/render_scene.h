@@ -15,7 +15,8 @@ namespace bandvox::app {
 
 /// A grid of a file that is to be seen, and how.
 struct ObjectRequest {
-    std::string file;  ///< may hold a pattern for the number of a frame
+    std::string file;   ///< may hold a pattern for the number of a frame
+    std::string place;  ///< in a scene file, for errors; empty if there is none
     std::optional<std::string> grid;
     std::optional<std::string> colors;        ///< name of the grid of colours; "none" for none
     std::optional<std::string> temperatures;  ///< name of the grid of temperatures; the same

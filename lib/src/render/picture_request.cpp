@@ -40,6 +40,11 @@ void failNotFinite(const openvdb::FloatGrid& grid) {
                                       "\" has values that are not finite; expected a density");
 }
 
+void failNamed(const SceneObject& object, const Error& error) {
+    const std::string of = object.name.empty() ? "" : object.name + ": ";
+    throw Error(error.kind(), of + error.what());
+}
+
 void requireValid(const PictureOptions& options) {
     requireInRange("width, pixels,", options.width, 1, kLargestSide);
     requireInRange("height, pixels,", options.height, 1, kLargestSide);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bandvox/core/error.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/render/density_to_image.h>
 
@@ -20,6 +21,9 @@ void requireDrawable(const openvdb::FloatGrid& grid);
 /// Error(ErrorKind::Usage) if it comes from the options, Error(ErrorKind::Input) otherwise.
 double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata>& metadata,
              const std::optional<double>& iso);
+
+/// Throws an error about an object: what it says begins with the object's name.
+[[noreturn]] void failNamed(const SceneObject& object, const Error& error);
 
 /// The shortest side of a voxel, world units.
 double shortestVoxelSide(const openvdb::FloatGrid& grid);

@@ -1,0 +1,125 @@
+// What the render command says of inputs, scene files and values that it cannot draw by.
+
+#include "run_command.h"
+
+#include <bandvox/grid/density_grid.h>
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetSphere.h>
+
+#include <cmath>
+#include <limits>
+
+namespace bandvox::app_test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
+
+/// A cube of 3³ voxels of a value.
+openvdb::FloatGrid::Ptr blockOf(float value, const std::string& name = "density") {
+    auto grid = openvdb::FloatGrid::create(0);
+    grid->setName(name);
+    grid->fill(openvdb::CoordBBox(openvdb::Coord(-1), openvdb::Coord(1)), value);
+    return grid;
+}
+
+class RenderRefusals : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        openvdb::initialize();
+        sFolder = std::make_unique<TemporaryFolder>();
+        writeVdb(*sFolder / "good.vdb", {blockOf(1)});
+    }
+    static void TearDownTestSuite() { sFolder.reset(); }
+
+    static RunResult render(Names arguments) {
+        arguments.insert(arguments.begin(), "render");
+        arguments.insert(arguments.end(), {"--res", "8x8"});
+        return runBandvox(arguments, {.folder = sFolder->path()});
+    }
+
+    /// Expects that a picture is refused in words that have each of `parts`.
+    static void expectRefused(const Names& arguments, int status, const Names& parts) {
+        const RunResult result = render(arguments);
+        EXPECT_EQ(result.status, status) << result.err;
+        for (const std::string& part : parts) {
+            EXPECT_NE(result.err.find(part), std::string::npos) << part << ": " << result.err;
+        }
+    }
+
+    static std::unique_ptr<TemporaryFolder> sFolder;
+};
+
+std::unique_ptr<TemporaryFolder> RenderRefusals::sFolder;
+
+TEST_F(RenderRefusals, AnErrorNamesTheFileOfItsGrid) {
+    const auto distances =
+        openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(1, openvdb::Vec3f(0), 0.2F);
+    auto colors = openvdb::Vec3SGrid::create();
+    colors->setName("Cd");
+    colors->tree().setValue(openvdb::Coord(0), openvdb::Vec3f(kNoNumber));
+    writeVdb(*sFolder / "nan.vdb", {blockOf(kNoNumber)});
+    writeVdb(*sFolder / "empty.vdb", {blockOf(0)->copyWithNewTree()});
+    writeVdb(*sFolder / "distances.vdb", {distances});
+    writeVdb(*sFolder / "colours.vdb", {blockOf(1), colors});
+    writeVdb(*sFolder / "heat.vdb", {blockOf(1), blockOf(kNoNumber, "temperature")});
+    writeVdb(*sFolder / "thin.vdb", {blockOf(0.25F)});
+    struct Case {
+        std::string file;
+        Names options;
+        int status;
+    };
+    const std::vector<Case> cases{{"nan.vdb", {}, 3},
+                                  {"nan.vdb", {"--mode", "volume"}, 3},
+                                  {"empty.vdb", {}, 3},
+                                  {"distances.vdb", {"--mode", "volume"}, 3},
+                                  {"colours.vdb", {}, 3},
+                                  {"heat.vdb", {"--mode", "volume"}, 3},
+                                  {"thin.vdb", {"--iso", "0.5/-1"}, 2},
+                                  {"thin.vdb", {"--scale", "1/1e-9"}, 2}};
+    for (const auto& [file, options, status] : cases) {
+        SCOPED_TRACE(file);
+        Names arguments{"good.vdb", file, "-o", "x.png"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        expectRefused(arguments, status, {"'" + file + "': "});
+    }
+    expectRefused({"thin.vdb", "nan.vdb", "-o", "x.png", "--mode", "volume/surface"}, 3,
+                  {"'nan.vdb': "});
+    expectRefused({"thin.vdb", "-o", "x.png"}, 4, {"'thin.vdb': the density is at most 0.25"});
+    expectRefused(
+        {"thin.vdb", "thin.vdb", "-o", "x.png", "--iso", "0.5/0.75"}, 4,
+        {"'thin.vdb': the density is at most 0.25, below the iso-value 0.5; 'thin.vdb': ", "0.75"});
+    expectRefused({"empty.vdb", "-o", "x.png", "--shading", "depth"}, 3, {"'empty.vdb': "});
+    expectRefused({"thin.vdb", "-o", "x.png", "--shading", "depth"}, 4, {"'thin.vdb': "});
+}
+
+TEST_F(RenderRefusals, AnErrorNamesTheFrameAndItsFile) {
+    writeVdb(*sFolder / "in.0007.vdb", {blockOf(1)});
+    writeVdb(*sFolder / "in.0008.vdb", {blockOf(kNoNumber)});
+    writeVdb(*sFolder / "in.0009.vdb", {blockOf(1, "heat"), blockOf(1, "smoke")});
+    writeVdb(*sFolder / "in.0010.vdb", {blockOf(0.25F)});
+    for (const auto& [frame, status, file] :
+         {std::tuple{"8", 3, "'in.0008.vdb'"}, std::tuple{"9", 3, "'in.0009.vdb'"},
+          std::tuple{"10", 4, "'in.0010.vdb'"}, std::tuple{"11", 3, "in.0011.vdb"}}) {
+        const Names words{"frame " + std::string(frame) + ": ", file};
+        expectRefused({"in.####.vdb", "-o", "out.####.png", "--frames", frame}, status, words);
+        expectRefused({"in.####.vdb", "good.vdb", "-o", "out.####.png", "--frames", frame, "--mode",
+                       "surface", "--iso", "0.5/2"},
+                      status, words);
+    }
+    expectRefused({"in.####.vdb", "-o", "out.####.png", "--frames", "7-10x3", "--shading", "depth"},
+                  4, {"frame 10: ", "'in.0010.vdb': "});
+}
+
+TEST_F(RenderRefusals, AnErrorNamesTheObjectOfASceneFile) {
+    writeVdb(*sFolder / "nan.vdb", {blockOf(kNoNumber)});
+    writeText(*sFolder / "scene.json",
+              R"({"objects": [{"file": "good.vdb"}, {"file": "nan.vdb"}]})");
+    expectRefused({"scene.json", "-o", "x.png"}, 3, {"'scene.json': objects[1] ('nan.vdb'): "});
+}
+
+}  // namespace
+}  // namespace bandvox::app_test
