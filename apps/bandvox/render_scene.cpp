@@ -143,6 +143,7 @@ Light readLight(const OptionValues& values) {
 void readSceneFile(const CommandLine& line, const std::string& path,
                    const std::vector<std::string>& pictureNames, SceneRequest& request) {
     const SceneFile file(path);
+    request.file = file.path();
     for (const auto& names : {kObjectNames, kLightNames}) {
         for (const std::string& name : names) {
             if (!line.has(name)) continue;
@@ -196,7 +197,9 @@ void readSceneFile(const CommandLine& line, const std::string& path,
         }
         readPictureOptions(values);  // refuses what cannot be, by the file's name
         for (const auto& [name, value] : values.all()) {
-            if (!request.picture.has(name)) request.picture.set(name, value, file.path());
+            if (request.picture.has(name)) continue;
+            request.picture.set(name, value, file.path());
+            request.places[name] = std::string(group) + "." + name;
         }
     }
 }

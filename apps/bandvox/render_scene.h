@@ -7,6 +7,7 @@
 #include <bandvox/render/placement.h>
 #include <bandvox/render/scene.h>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +31,8 @@ struct SceneRequest {
     std::vector<Light> lights;
     Environment environment;
     OptionValues picture;  ///< settings of picture and camera, those of a scene file included
+    std::string file;      ///< the scene file; empty if there is none
+    std::map<std::string, std::string> places;  ///< of those settings in it, as camera.eye
 };
 
 /// The options of `render` that are about what is seen.

@@ -119,6 +119,45 @@ TEST_F(RenderRefusals, AnErrorNamesTheObjectOfASceneFile) {
     writeText(*sFolder / "scene.json",
               R"({"objects": [{"file": "good.vdb"}, {"file": "nan.vdb"}]})");
     expectRefused({"scene.json", "-o", "x.png"}, 3, {"'scene.json': objects[1] ('nan.vdb'): "});
+    // What the file asks for is no wrong use of the command.
+    for (const char* setting : {R"("iso": -1)", R"("scale": 1e-9)"}) {
+        writeText(*sFolder / "scene.json", R"({"objects": [{"file": "good.vdb"}, {"file": )"
+                                           R"("good.vdb", )" +
+                                               std::string(setting) + "}]}");
+        expectRefused({"scene.json", "-o", "x.png"}, 3, {"'scene.json': objects[1] ("});
+    }
+}
+
+TEST_F(RenderRefusals, SettingsOfASceneFileThatDoNotGoTogetherAreNamed) {
+    const auto write = [](const std::string& groups) {
+        writeText(*sFolder / "view.json", R"({"objects": [{"file": "good.vdb"}], )" + groups + "}");
+    };
+    write(R"("camera": {"eye": [1, 2, 3], "lookat": [1, 2, 3]})");
+    expectRefused({"view.json", "-o", "x.png"}, 3,
+                  {"'view.json': camera.eye, camera.lookat: ", "expected two places"});
+    // An option takes part in it, or undoes it.
+    expectRefused({"view.json", "-o", "x.png", "--lookat", "1,2,3"}, 2,
+                  {"'view.json': camera.eye"});
+    EXPECT_EQ(render({"view.json", "-o", "x.png", "--eye", "0,0,9", "--lookat", "0,0,0"}).status,
+              0);
+    write(R"("camera": {"eye": [0, 0, 0]})");  // which is the middle
+    expectRefused({"view.json", "-o", "x.png"}, 3, {"'view.json': camera.eye: "});
+    write(R"("camera": {"from": [0, 0, 0]})");
+    expectRefused({"view.json", "-o", "x.png"}, 3, {"'view.json': camera.from: "});
+    write(R"("camera": {"up": [0, 0, 2], "from": [0, 0, 1]})");
+    expectRefused({"view.json", "-o", "x.png"}, 3, {"'view.json': camera.from, camera.up: "});
+    write(R"("picture": {"crop": [0, 0, 50, 50]})");
+    expectRefused({"view.json", "-o", "x.png"}, 2, {"'view.json': picture.crop: ", "8 x 8"});
+    write(R"("picture": {"gather": 0, "bounces": 2})");
+    expectRefused({"view.json", "-o", "x.png"}, 3, {"'view.json': picture.bounces: "});
+    write(R"("picture": {"channels": "depth"})");
+    expectRefused({"view.json", "-o", "x.png"}, 2, {"'view.json': picture.channels: "});
+    // What options alone ask for is theirs.
+    write(R"("picture": {"samples": 1})");
+    const RunResult result =
+        render({"view.json", "-o", "x.png", "--eye", "1,2,3", "--lookat", "1,2,3"});
+    EXPECT_EQ(result.status, 2);
+    EXPECT_EQ(result.err.find("view.json"), std::string::npos) << result.err;
 }
 
 }  // namespace
