@@ -38,9 +38,12 @@ bool needsFraming(const CameraOptions& camera);
 std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid,
                                          const Progress& progress = silentProgress());
 
-/// The same of all objects of a scene.
-std::vector<openvdb::Vec3d> pointsToFrame(const Scene& scene,
-                                          const Progress& progress = silentProgress());
+/// Points to frame in a picture, world units.
+struct FramedPoints {
+    std::vector<openvdb::Vec3d> active;  ///< activePoints of all objects of a scene
+    std::vector<openvdb::Vec3d> faint;   ///< how far the averages reach that volumes are read by
+};
+FramedPoints pointsToFrame(const Scene& scene, const Progress& progress = silentProgress());
 
 /// Throws Error(ErrorKind::Result), for a grid whose values reach no more than `maximum`.
 [[noreturn]] void failEmpty(double maximum, double iso);

@@ -38,9 +38,13 @@ constexpr int kPreviewParts = 64;
 constexpr double kLeastCoverage = 1e-3;
 
 Camera makeCamera(const Scene& scene, const PictureOptions& options) {
-    return Camera(options.camera, options.width, options.height,
-                  needsFraming(options.camera) ? pointsToFrame(scene)
-                                               : std::vector<Vec3d>{*options.camera.lookat});
+    FramedPoints framed;
+    if (needsFraming(options.camera)) {
+        framed = pointsToFrame(scene);
+    } else {
+        framed.active = {*options.camera.lookat};
+    }
+    return Camera(options.camera, options.width, options.height, framed.active, framed.faint);
 }
 
 // Draws pixels, from many threads.
