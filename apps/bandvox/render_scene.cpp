@@ -29,6 +29,11 @@ const std::vector<std::string> kObjectNames{
     "reflectance", "transparency", "refraction", "tint-length", "extinction", "anisotropy",
     "emission",    "temperature",  "glow",       "scale",       "rotate",     "translate"};
 
+// Those of them that are names, which may hold a slash themselves.
+bool isGridName(const std::string& option) {
+    return option == "grid" || option == "colors" || option == "temperature";
+}
+
 // Options that say what a scene file says of lights.
 const std::vector<std::string> kLightNames{
     "light",   "light-at",    "light-color",      "light-size",
@@ -72,19 +77,43 @@ ObjectRequest readObject(const OptionValues& values, const std::string& file) {
     return request;
 }
 
+// The values between slashes. In names of grids a slash or a backslash after a backslash is a part
+// of the name, and of the name for a single input any slash.
+std::vector<std::string> splitValues(const std::string& name, const std::string& text,
+                                     std::size_t count) {
+    std::vector<std::string> parts;
+    if (!isGridName(name)) {
+        for (const std::string_view part : split(text, '/')) parts.emplace_back(part);
+        return parts;
+    }
+    parts.emplace_back();
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool isEscape =
+            text[i] == '\\' && i + 1 < text.size() && (text[i + 1] == '/' || text[i + 1] == '\\');
+        if (text[i] == '/' && count > 1) {
+            parts.emplace_back();
+        } else {
+            parts.back() += text[isEscape ? ++i : i];
+        }
+    }
+    return parts;
+}
+
 // The settings of object i of `count`, of which the options give one for all or one for each.
 OptionValues partOf(const CommandLine& line, std::size_t i, std::size_t count) {
     OptionValues part(line.title());
     for (const std::string& name : kObjectNames) {
         const auto given = line.text(name);
         if (!given) continue;
-        const auto parts = split(*given, '/');
+        const std::vector<std::string> parts = splitValues(name, *given, count);
         if (parts.size() != 1 && parts.size() != count) {
-            line.fail(name, "one value, or one for each of the " +
-                                formatCount(static_cast<std::int64_t>(count), "input", "inputs") +
-                                " with slashes between them");
+            line.fail(name,
+                      "one value, or one for each of the " +
+                          formatCount(static_cast<std::int64_t>(count), "input", "inputs") +
+                          " with slashes between them" +
+                          (isGridName(name) ? ", and a backslash before a slash in a name" : ""));
         }
-        part.set(name, std::string(parts[parts.size() == 1 ? 0 : i]));
+        part.set(name, parts[parts.size() == 1 ? 0 : i]);
     }
     return part;
 }
@@ -287,7 +316,9 @@ std::vector<OptionEntry> sceneEntries() {
     const std::string light = "Light";
     return {
         {"grid", 0, "NAME", "density, or the only one of floats",
-         "Which grid to draw; NAME[1] is the second one of that name.", object},
+         "Which grid to draw; NAME[1] is the second one of that name. Of several inputs a slash or "
+         "a backslash in a name has a backslash before it.",
+         object},
         {"mode",
          0,
          "KIND",

@@ -160,5 +160,41 @@ TEST_F(RenderRefusals, SettingsOfASceneFileThatDoNotGoTogetherAreNamed) {
     EXPECT_EQ(result.err.find("view.json"), std::string::npos) << result.err;
 }
 
+TEST_F(RenderRefusals, AnyGridCanBeChosen) {
+    const Names names{"a/b", "a", "a", "a[1]", "x[0]", "x", "c\\d", "e\\/f", "", "none"};
+    openvdb::GridCPtrVec grids;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        grids.push_back(blockOf(1 + static_cast<float>(i), names[i]));
+    }
+    writeVdb(*sFolder / "names.vdb", grids);
+    // Seen where it is as high as the only one of its height.
+    const auto expectChosen = [](const Names& arguments, std::size_t i) {
+        const RunResult low = render(arguments);
+        EXPECT_EQ(low.status, 4) << low.err;
+        const std::string height = "at most " + std::to_string(i + 1) + ",";
+        EXPECT_NE(low.err.find(height), std::string::npos) << height << low.err;
+    };
+    const std::vector<std::pair<std::string, std::size_t>> chosen{
+        {"a/b", 0},     {"a\\/b", 0},     {"a[0]", 1}, {"a[1]", 2}, {"a[1][0]", 3},
+        {"x[0]", 4},    {"x[0][0]", 4},   {"x", 5},    {"c\\d", 6}, {"c\\\\d", 6},
+        {"e\\\\/f", 7}, {"e\\\\\\/f", 7}, {"[0]", 8},  {"none", 9}};
+    for (const auto& [name, i] : chosen) {
+        SCOPED_TRACE(name);
+        expectChosen({"names.vdb", "-o", "x.png", "--iso", "100", "--grid", name}, i);
+    }
+    const std::vector<std::pair<std::string, std::size_t>> ofTwo{
+        {"a\\/b/x", 0}, {"e\\\\\\/f/a\\/b", 7}, {"c\\d/x", 6}, {"a\\/b", 0}};
+    for (const auto& [text, i] : ofTwo) {
+        SCOPED_TRACE(text);
+        expectChosen({"names.vdb", "names.vdb", "-o", "x.png", "--iso", "100", "--grid", text}, i);
+    }
+    expectRefused({"names.vdb", "names.vdb", "-o", "x.png", "--grid", "a/b/x"}, 2,
+                  {"2 inputs", "a backslash before a slash"});
+    // JSON has lists for several objects, and takes a name as it is.
+    writeText(*sFolder / "names.json",
+              R"({"objects": [{"file": "names.vdb", "iso": 100, "grid": "a/b"}]})");
+    expectChosen({"names.json", "-o", "x.png"}, 0);
+}
+
 }  // namespace
 }  // namespace bandvox::app_test
