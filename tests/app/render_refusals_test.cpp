@@ -8,6 +8,7 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -194,6 +195,32 @@ TEST_F(RenderRefusals, AnyGridCanBeChosen) {
     writeText(*sFolder / "names.json",
               R"({"objects": [{"file": "names.vdb", "iso": 100, "grid": "a/b"}]})");
     expectChosen({"names.json", "-o", "x.png"}, 0);
+}
+
+TEST_F(RenderRefusals, IsoValuesThatNothingReachesAreToldAtOnce) {
+    ASSERT_EQ(runBandvox({"convert", "shape:sphere", "-o", "ball.vdb", "-r", "64"},
+                         {.folder = sFolder->path()})
+                  .status,
+              0);
+    writeVdb(*sFolder / "distances.vdb", {openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(
+                                             1, openvdb::Vec3f(0), 0.05F)});
+    const auto start = std::chrono::steady_clock::now();
+    for (const char* file : {"ball.vdb", "good.vdb"}) {
+        expectRefused({file, "-o", "x.png", "--iso", "1e-100"}, 2, {"above the grid's background"});
+        expectRefused({file, "-o", "x.png", "--iso", "1e300"}, 4, {"is at most 1", "1e+300"});
+        expectRefused({file, "-o", "x.png", "--iso=-1e300"}, 2, {"above the grid's background"});
+        expectRefused({file, "-o", "x.png", "--iso", "1e-100", "--shading", "depth"}, 2,
+                      {"above the grid's background"});
+        EXPECT_EQ(render({file, "-o", "x.png", "--iso", "1e-40"}).status, 0);
+    }
+    expectRefused({"distances.vdb", "-o", "x.png", "--iso", "1e300"}, 2,
+                  {"below the level set's background"});
+    expectRefused({"distances.vdb", "-o", "x.png", "--iso=-1e300"}, 4,
+                  {"the level set is at least -0.15", "-1e+300"});
+    EXPECT_EQ(render({"distances.vdb", "-o", "x.png", "--iso", "1e-100"}).status, 0);
+    // Minutes when blocks of background were looked at.
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    EXPECT_LT(taken.count(), 60);
 }
 
 }  // namespace

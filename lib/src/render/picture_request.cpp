@@ -229,14 +229,19 @@ void requireDrawable(const openvdb::FloatGrid& grid) {
     if (!std::isfinite(grid.background())) failNotFinite(grid);
 }
 
+bool isAboveBackground(double iso, float background) {
+    return static_cast<float>(0.5 * (iso + background)) > background;
+}
+
 double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata>& metadata,
              const std::optional<double>& asked) {
     const double iso = asked.value_or(metadata ? metadata->iso : 0.5);
-    if (!std::isfinite(iso) || !(iso > grid.background())) {
+    if (!std::isfinite(iso) || !isAboveBackground(iso, grid.background())) {
         std::ostringstream message;
         const bool isStored = !asked && metadata;
         message << "the iso-value " << (isStored ? "stored in the grid " : "") << "is " << iso
-                << "; it must be above the grid's background, " << grid.background();
+                << "; it must be above the grid's background, " << grid.background()
+                << (iso > grid.background() ? ", by more than a float is rounded" : "");
         throw Error(asked ? ErrorKind::Usage : ErrorKind::Input, message.str());
     }
     return iso;

@@ -17,6 +17,10 @@ void requireDrawable(const openvdb::FloatGrid& grid);
 /// Throws Error(ErrorKind::Input), for a grid that has values that are not finite.
 [[noreturn]] void failNotFinite(const openvdb::FloatGrid& grid);
 
+/// True if a float can be between a background and an iso-value above it. Else blocks of nothing
+/// but background would be looked at for a surface.
+bool isAboveBackground(double iso, float background);
+
 /// The density that is the surface. Throws unless it is above the background:
 /// Error(ErrorKind::Usage) if it comes from the options, Error(ErrorKind::Input) otherwise.
 double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata>& metadata,
