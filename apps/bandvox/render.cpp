@@ -194,6 +194,14 @@ struct Totals {
     std::int64_t rays = 0, hits = 0;
 };
 
+// A picture of other colours than those that were asked for is told of before it is drawn.
+void warnOfColors(CommandRun& run, const std::string& output) {
+    if (extensionOf(output) != ".png") return;
+    if (const std::string fault = colorConfigurationFault(); !fault.empty()) {
+        run.warn({fault}, ErrorKind::Runtime);
+    }
+}
+
 Image drawFrame(CommandRun& run, const RenderRequest& request, const Scene& scene,
                 const PictureOptions& picture, const AtomicFile& output, Totals& totals) {
     PictureOptions options = picture;
@@ -335,6 +343,7 @@ const CommandTable& renderTable() {
 void runRender(const CommandLine& line) {
     const RenderRequest request = parseRender(line);
     CommandRun run(line);
+    warnOfColors(run, request.output);
     if (!request.frames.empty()) return drawSequence(run, request);
     AtomicFile output(request.output);
     const Scene scene = loadScene(run, request.scene, 0);

@@ -16,9 +16,12 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <ostream>
+#include <sstream>
+#include <string>
 
 namespace bandvox {
 
@@ -63,16 +66,52 @@ class StreamProxy final : public OIIO::Filesystem::IOProxy {
     int mFailure = 0;
 };
 
-// From one colour space to another, if the configuration knows both.
-OIIO::ColorProcessorHandle colorProcessor(const char* from, const char* to) {
-    static const OIIO::ColorConfig config;
-    return config.createColorProcessor(from, to);
+constexpr const char* kLinear = "linear";
+constexpr const char* kCoded = "sRGB";
+
+// The configuration that the environment names, else what is built in.
+class ColorConfiguration {
+  public:
+    ColorConfiguration() {
+        // All fall back to what is built in; but for a file of raw data they keep why.
+        std::string why = mConfig.geterror();
+        if (why.empty() && mConfig.configname() == "built-in") why = "it knows raw data alone";
+        if (why.empty()) {
+            mConfig.createColorProcessor(kLinear, kCoded);
+            why = mConfig.geterror();
+        }
+        const char* const name = std::getenv("OCIO");
+        if (name == nullptr || *name == '\0' || why.empty()) return;
+        std::ostringstream fault;
+        fault << "'" << name
+              << "', which the variable OCIO names, is no colour configuration that a .png can be "
+                 "written by ("
+              << why << "); it is written by the sRGB that is built in";
+        mFault = fault.str();
+    }
+
+    // From one colour space to another, if the configuration knows both.
+    OIIO::ColorProcessorHandle processor(const char* from, const char* to) const {
+        return mConfig.createColorProcessor(from, to);
+    }
+
+    // Why the one that the environment names is not used; empty if it is.
+    const std::string& fault() const { return mFault; }
+
+  private:
+    OIIO::ColorConfig mConfig;
+    std::string mFault;
+};
+
+const ColorConfiguration& colorConfiguration() {
+    static const ColorConfiguration configuration;
+    return configuration;
 }
 
 // Changes the colours of pixels in place; alpha stays.
 void convertColors(std::vector<float>& pixels, const OIIO::ImageSpec& spec, const char* from,
                    const char* to) {
-    const OIIO::ColorProcessorHandle processor = colorProcessor(from, to);
+    const OIIO::ColorProcessorHandle processor = colorConfiguration().processor(from, to);
     if (!processor) {
         throw Error(ErrorKind::Runtime,
                     std::string("OpenImageIO's colour configuration (see the variable OCIO) has no "
@@ -98,7 +137,7 @@ bool writeStrips(OIIO::ImageOutput& output, const PngRows& image) {
         pixels.resize(4 * static_cast<std::size_t>(image.width) * (bottom - top));
         image.rows(top, bottom, pixels);
         OIIO::ImageSpec spec(image.width, bottom - top, 4, OIIO::TypeDesc::FLOAT);
-        convertColors(pixels, spec, "linear", "sRGB");
+        convertColors(pixels, spec, kLinear, kCoded);
         bytes.resize(pixels.size());
         std::transform(pixels.begin(), pixels.end(), bytes.begin(), eightBits);
         if (!output.write_scanlines(top, bottom, 0, OIIO::TypeDesc::UINT8, bytes.data())) {
@@ -157,6 +196,8 @@ class OpenImageIo final : public ImageLibrary {
         config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
         return readCoded(OIIO::ImageInput::open(name, &config).get(), double(bytes.size()), guard);
     }
+
+    std::string colorFault() const override { return colorConfiguration().fault(); }
 
     WriteFailure writePng(std::ostream& stream, const PngRows& image) const override {
         StreamProxy proxy(stream);
@@ -261,7 +302,7 @@ class OpenImageIo final : public ImageLibrary {
         if (space == "sRGB" || (space.empty() && isInteger)) {
             const OIIO::ImageSpec floats(image.width, image.height, image.channels,
                                          OIIO::TypeDesc::FLOAT);
-            convertColors(image.values, floats, "sRGB", "linear");
+            convertColors(image.values, floats, kCoded, kLinear);
         }
         return image;
     }

@@ -1,5 +1,6 @@
 // What the render command says of inputs, scene files and values that it cannot draw by.
 
+#include "build_places.h"
 #include "run_command.h"
 
 #include <bandvox/grid/density_grid.h>
@@ -221,6 +222,50 @@ TEST_F(RenderRefusals, IsoValuesThatNothingReachesAreToldAtOnce) {
     // Minutes when blocks of background were looked at.
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     EXPECT_LT(taken.count(), 60);
+}
+
+TEST_F(RenderRefusals, AColourConfigurationThatIsNotUsedIsTold) {
+    const std::string head =
+        "ocio_profile_version: 1\nstrictparsing: true\nroles:\n"
+        "  default: raw\n  scene_linear: raw\ndisplays:\n  default:\n"
+        "    - !<View> {name: Raw, colorspace: raw}\ncolorspaces:\n"
+        "  - !<ColorSpace>\n    name: raw\n    bitdepth: 32f\n";
+    writeText(*sFolder / "broken.ocio", "no configuration");
+    const std::string other = "  - !<ColorSpace>\n    name: ";
+    const std::string root =
+        "\n    bitdepth: 32f\n    from_reference: !<ExponentTransform> "
+        "{value: [0.5, 0.5, 0.5, 1]}\n";
+    writeText(*sFolder / "raw.ocio", head);
+    writeText(*sFolder / "other.ocio", head + other + "root" + root);
+    writeText(*sFolder / "whole.ocio", head + other + "sRGB" + root);
+    const auto renderBy = [](const std::string& configuration, const Names& more) {
+        Names arguments{"/usr/bin/env",
+                        "OCIO=" + configuration,
+                        build_places::command(),
+                        "render",
+                        "good.vdb",
+                        "--res",
+                        "8x8"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return runProgram(arguments, {.folder = sFolder->path()});
+    };
+    ASSERT_EQ(renderBy("", {"-o", "plain.png"}).status, 0);
+    for (const auto& [file, why] :
+         {std::pair{"none.ocio", "non-existent"}, std::pair{"broken.ocio", "Error reading"},
+          std::pair{"other.ocio", "'sRGB'"}, std::pair{"raw.ocio", "raw data alone"}}) {
+        const RunResult result = renderBy(file, {"-o", "fallback.png"});
+        EXPECT_EQ(result.status, 0) << result.err;
+        EXPECT_EQ(countLines(result.err, "bandvox: warning: '" + std::string(file) + "'"), 1)
+            << result.err;
+        EXPECT_NE(result.err.find(why), std::string::npos) << result.err;
+        EXPECT_EQ(renderBy(file, {"-o", "x.png", "--strict"}).status, 1);
+        // Linear light needs none.
+        EXPECT_EQ(countLines(renderBy(file, {"-o", "x.exr"}).err, "bandvox: warning"), 0);
+    }
+    const RunResult whole = renderBy("whole.ocio", {"-o", "whole.png"});
+    EXPECT_EQ(whole.status, 0) << whole.err;
+    EXPECT_EQ(countLines(whole.err, "bandvox: warning"), 0) << whole.err;
+    EXPECT_EQ(countLines(renderBy("", {"-o", "x.png"}).err, "bandvox: warning"), 0);
 }
 
 }  // namespace
