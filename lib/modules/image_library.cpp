@@ -46,12 +46,20 @@ class StreamProxy final : public OIIO::Filesystem::IOProxy {
     }
     std::size_t write(const void* bytes, std::size_t size) override {
         m_pos += static_cast<std::int64_t>(size);
+        if (mIsAbandoned) {
+            mHasLeftOut = true;
+            return size;
+        }
         return noted(static_cast<bool>(mStream.write(static_cast<const char*>(bytes),
                                                      static_cast<std::streamsize>(size))))
                    ? size
                    : 0;
     }
     void flush() const override { mStream.flush(); }
+
+    // Leaves out what is written from now on, as of a picture that is given up.
+    void abandon() { mIsAbandoned = true; }
+    bool hasLeftOut() const { return mHasLeftOut; }
 
     // What went wrong first; 0 if nothing did.
     int failure() const { return mFailure; }
@@ -64,6 +72,8 @@ class StreamProxy final : public OIIO::Filesystem::IOProxy {
 
     std::ostream& mStream;
     int mFailure = 0;
+    bool mIsAbandoned = false;
+    bool mHasLeftOut = false;
 };
 
 constexpr const char* kLinear = "linear";
@@ -129,15 +139,33 @@ std::uint8_t eightBits(float value) {
     return static_cast<std::uint8_t>(std::lround(255 * (value > 0 ? std::min(value, 1.0F) : 0)));
 }
 
-bool writeStrips(OIIO::ImageOutput& output, const PngRows& image) {
+// Gives up a picture of which the rows from `top` on are missing. libpng says on the standard
+// error, however it is closed, that nothing came of a file of which it holds all rows back: it gets
+// black ones until it puts some out.
+void giveUp(OIIO::ImageOutput& output, StreamProxy& proxy, const PngRows& image, int top) {
+    proxy.abandon();
+    const std::vector<std::uint8_t> black(4 * static_cast<std::size_t>(image.width) * kStripRows);
+    while (top < image.height && !proxy.hasLeftOut()) {
+        const int bottom = std::min(top + kStripRows, image.height);
+        if (!output.write_scanlines(top, bottom, 0, OIIO::TypeDesc::UINT8, black.data())) return;
+        top = bottom;
+    }
+}
+
+bool writeStrips(OIIO::ImageOutput& output, StreamProxy& proxy, const PngRows& image) {
     std::vector<float> pixels;
     std::vector<std::uint8_t> bytes;
     for (int top = 0; top < image.height; top += kStripRows) {
         const int bottom = std::min(top + kStripRows, image.height);
         pixels.resize(4 * static_cast<std::size_t>(image.width) * (bottom - top));
-        image.rows(top, bottom, pixels);
-        OIIO::ImageSpec spec(image.width, bottom - top, 4, OIIO::TypeDesc::FLOAT);
-        convertColors(pixels, spec, kLinear, kCoded);
+        try {
+            image.rows(top, bottom, pixels);
+            const OIIO::ImageSpec spec(image.width, bottom - top, 4, OIIO::TypeDesc::FLOAT);
+            convertColors(pixels, spec, kLinear, kCoded);
+        } catch (...) {
+            giveUp(output, proxy, image, top);
+            throw;
+        }
         bytes.resize(pixels.size());
         std::transform(pixels.begin(), pixels.end(), bytes.begin(), eightBits);
         if (!output.write_scanlines(top, bottom, 0, OIIO::TypeDesc::UINT8, bytes.data())) {
@@ -148,7 +176,7 @@ bool writeStrips(OIIO::ImageOutput& output, const PngRows& image) {
 }
 
 // Returns what went wrong, or nothing.
-std::string encode(const PngRows& image, OIIO::Filesystem::IOProxy& proxy) {
+std::string encode(const PngRows& image, StreamProxy& proxy) {
     OIIO::ImageSpec spec(image.width, image.height, 4, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
     spec.attribute("oiio:UnassociatedAlpha", 1);
@@ -158,7 +186,8 @@ std::string encode(const PngRows& image, OIIO::Filesystem::IOProxy& proxy) {
     const auto output = OIIO::ImageOutput::create("picture.png", &proxy);
     if (!output) return OIIO::geterror();
     if (!output->supports("ioproxy")) return "OpenImageIO cannot write it through this library";
-    if (!output->open("picture.png", spec) || !writeStrips(*output, image) || !output->close()) {
+    if (!output->open("picture.png", spec) || !writeStrips(*output, proxy, image) ||
+        !output->close()) {
         return output->geterror();
     }
     return {};
