@@ -4,8 +4,10 @@
 
 #include <bandvox/core/error.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
+#include <set>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -13,15 +15,31 @@
 namespace bandvox::app {
 namespace {
 
-// The names that tell a file's grids from each other: of several of one name with their numbers.
-std::vector<std::string> uniqueNames(const openvdb::GridPtrVec& grids) {
-    std::map<std::string, int> counts, numbers;
-    for (const auto& grid : grids) ++counts[grid->getName()];
+// The names of a file's grids with their numbers among those of that name.
+std::vector<std::string> numberedNames(const openvdb::GridPtrVec& grids) {
+    std::map<std::string, int> numbers;
     std::vector<std::string> names;
     for (const auto& grid : grids) {
         std::string name = grid->getName();
-        if (counts[name] > 1) name += "[" + std::to_string(numbers[name]++) + "]";
+        name += "[" + std::to_string(numbers[grid->getName()]++) + "]";
         names.push_back(name);
+    }
+    return names;
+}
+
+// The names that tell a file's grids from each other: with their numbers where there are several
+// of a name, where a name is what another grid has with its number, and where there is none.
+std::vector<std::string> uniqueNames(const openvdb::GridPtrVec& grids) {
+    std::vector<std::string> names = numberedNames(grids);
+    std::map<std::string, int> counts;
+    for (const auto& grid : grids) ++counts[grid->getName()];
+    std::set<std::string> taken{""};
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+        if (counts[grids[i]->getName()] > 1) taken.insert(names[i]);
+    }
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+        const std::string name = grids[i]->getName();
+        if (counts[name] == 1 && !taken.contains(name)) names[i] = name;
     }
     return names;
 }
@@ -55,10 +73,14 @@ openvdb::Vec3SGrid::Ptr asColors(const openvdb::GridBase::Ptr& grid) {
 template <typename Convert>
 auto named(const openvdb::GridPtrVec& grids, const std::string& name, const std::string& file,
            const Convert& convert) {
-    const std::vector<std::string> unique = uniqueNames(grids);
+    const std::vector<std::string> unique = uniqueNames(grids), numbered = numberedNames(grids);
     decltype(convert(openvdb::GridBase::Ptr())) found;
+    // What the name tells from all others comes first.
+    const auto itself = std::find(unique.begin(), unique.end(), name);
+    if (itself != unique.end()) found = convert(grids[std::size_t(itself - unique.begin())]);
+    if (found) return found;
     for (std::size_t i = 0; i < grids.size(); ++i) {
-        if (unique[i] != name && grids[i]->getName() != name) continue;
+        if (numbered[i] != name && grids[i]->getName() != name) continue;
         const auto grid = convert(grids[i]);
         if (!grid) continue;
         if (found) fail(grids, file, "one of them by its number, as in '" + unique[i] + "'");

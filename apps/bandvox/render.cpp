@@ -86,6 +86,45 @@ void readFrames(const CommandLine& line, RenderRequest& request) {
     }
 }
 
+// What of a picture's settings the library refuses; empty if it takes them.
+std::string refusalOf(const PictureOptions& picture) {
+    try {
+        requireValid(picture);
+        return {};
+    } catch (const Error& error) {
+        return error.what();
+    }
+}
+
+// Settings of which each is one that a picture may have, and not all together: those that a scene
+// file gives are named. They take part if without them something else is wrong, or nothing.
+void requireValidTogether(const SceneRequest& scene, const PictureOptions& picture) {
+    const std::string refusal = refusalOf(picture);
+    if (refusal.empty()) return;
+    std::vector<std::string> places;
+    bool isAsked = false;
+    for (const auto& [name, value] : scene.picture.all()) {
+        OptionValues others;
+        for (const auto& [other, text] : scene.picture.all()) {
+            if (other != name) others.set(other, text, scene.picture.origin(other));
+        }
+        try {
+            if (refusalOf(readPictureOptions(others)) == refusal) continue;
+        } catch (const Error&) {
+            continue;  // what is left cannot even be read
+        }
+        const auto place = scene.places.find(name);
+        if (place != scene.places.end()) {
+            places.push_back(place->second);
+        } else {
+            isAsked = true;
+        }
+    }
+    if (places.empty()) throw Error(ErrorKind::Usage, refusal);
+    throw Error(isAsked ? ErrorKind::Usage : ErrorKind::Input,
+                "'" + scene.file + "': " + joined(places, ", ") + ": " + refusal);
+}
+
 RenderRequest parseRender(const CommandLine& line) {
     RenderRequest request;
     request.output = line.requiredText("output");
@@ -97,13 +136,18 @@ RenderRequest parseRender(const CommandLine& line) {
     requireUsedCamera(request.scene.picture, request.picture.camera);
     request.channels = readChannels(request.scene.picture);
     if (request.scene.picture.has("channels") && extensionOf(request.output) != ".exr") {
-        throw Error(ErrorKind::Usage, "channels are chosen of an .exr, and '" + request.output +
-                                          "' is none: a .png holds colour alone");
+        const auto place = request.scene.places.find("channels");
+        throw Error(ErrorKind::Usage,
+                    (place == request.scene.places.end()
+                         ? ""
+                         : "'" + request.scene.file + "': " + place->second + ": ") +
+                        "channels are chosen of an .exr, and '" + request.output +
+                        "' is none: a .png holds colour alone");
     }
     request.previews = request.scene.picture.has("preview");
     request.shading = static_cast<Shading>(line.choice("shading", 0));
     if (request.shading != Shading::Spectral) requirePlain(line, request);
-    requireValid(request.picture);
+    requireValidTogether(request.scene, request.picture);
     for (const Light& light : request.scene.lights) requireValid(light);
     readFrames(line, request);
     return request;
@@ -112,20 +156,51 @@ RenderRequest parseRender(const CommandLine& line) {
 RenderResult draw(const RenderRequest& request, const Scene& scene, const PictureOptions& picture,
                   Progress& progress) {
     if (request.shading == Shading::Spectral) return sceneToImage(scene, picture, progress);
+    const SceneObject& object = scene.objects[0];
     RenderOptions options;
     static_cast<PictureOptions&>(options) = picture;
     options.shading = request.shading;
-    options.iso = scene.objects[0].iso;
-    options.color = scene.objects[0].material.color;
+    options.iso = object.iso;
+    options.color = object.material.color;
     options.light = scene.lights[0].place;
     options.ambient = scene.environment.color[0];
-    return densityToImage(scene.objects[0].grid, options, progress);
+    try {
+        return densityToImage(object.grid, options, progress);
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::Interrupted || error.kind() == ErrorKind::Memory) throw;
+        throw Error(error.kind(), object.name + ": " + error.what());
+    }
+}
+
+// Calls `body` for what is drawn of a scene. What its objects do not allow is no wrong use of the
+// command if a scene file wants it so.
+template <typename Body>
+auto ofScene(const SceneRequest& scene, const Body& body) {
+    try {
+        return body();
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::Usage || scene.file.empty()) throw;
+        const std::string message = error.what(), file = "'" + scene.file + "': ";
+        if (message.starts_with(file)) throw Error(ErrorKind::Input, message);
+        // Of a camera the objects say where it looks to if nothing else does.
+        const auto eye = scene.places.find("eye");
+        if (eye == scene.places.end()) throw;
+        throw Error(ErrorKind::Input, file + eye->second + ": " + message);
+    }
 }
 
 // What all pictures together took.
 struct Totals {
     std::int64_t rays = 0, hits = 0;
 };
+
+// A picture of other colours than those that were asked for is told of before it is drawn.
+void warnOfColors(CommandRun& run, const std::string& output) {
+    if (extensionOf(output) != ".png") return;
+    if (const std::string fault = colorConfigurationFault(); !fault.empty()) {
+        run.warn({fault}, ErrorKind::Runtime);
+    }
+}
 
 Image drawFrame(CommandRun& run, const RenderRequest& request, const Scene& scene,
                 const PictureOptions& picture, const AtomicFile& output, Totals& totals) {
@@ -147,7 +222,8 @@ Image drawFrame(CommandRun& run, const RenderRequest& request, const Scene& scen
         };
     }
     const double start = run.seconds();
-    RenderResult result = draw(request, scene, options, run.progress());
+    RenderResult result =
+        ofScene(request.scene, [&] { return draw(request, scene, options, run.progress()); });
     result.image.metadata.emplace_back("bandvox_seconds", run.seconds() - start);
     run.say("drawn    " + std::to_string(result.image.width) + " x " +
             std::to_string(result.image.height) + " pixels, " +
@@ -165,12 +241,14 @@ void drawSequence(CommandRun& run, const RenderRequest& request) {
     std::optional<Scene> scene;
     std::vector<CameraOptions> cameras;
     const bool hasInputFrames = hasFrames(request.scene);
-    for (std::size_t i = 0; i < request.frames.size(); ++i) {
-        const int frame = request.frames[i];
-        run.beginPart(i, request.frames.size());
+    const auto drawOne = [&](int frame) {
         if (!scene || hasInputFrames) {
             scene = loadScene(run, request.scene, frame);
-            if (request.turns > 0) cameras = turntable(*scene, request.picture, request.turns);
+            if (request.turns > 0) {
+                cameras = ofScene(request.scene, [&] {
+                    return turntable(*scene, request.picture, request.turns);
+                });
+            }
         }
         PictureOptions picture = request.picture;
         if (request.turns > 0) picture.camera = cameras.at(static_cast<std::size_t>(frame - 1));
@@ -179,6 +257,19 @@ void drawSequence(CommandRun& run, const RenderRequest& request) {
         run.writePart(output, [&](AtomicFile& file) {
             writeImage(file, image, request.channels, run.progress());
         });
+    };
+    for (std::size_t i = 0; i < request.frames.size(); ++i) {
+        const int frame = request.frames[i];
+        run.beginPart(i, request.frames.size());
+        try {
+            drawOne(frame);
+        } catch (const Error& error) {
+            // Wrong options are no frame's fault, nor is the user who stops the command.
+            const bool isOfFrame =
+                error.kind() != ErrorKind::Usage && error.kind() != ErrorKind::Interrupted;
+            if (!isOfFrame) throw;
+            throw Error(error.kind(), "frame " + std::to_string(frame) + ": " + error.what());
+        }
     }
     run.count("frames", request.frames.size());
     run.finish();
@@ -252,6 +343,7 @@ const CommandTable& renderTable() {
 void runRender(const CommandLine& line) {
     const RenderRequest request = parseRender(line);
     CommandRun run(line);
+    warnOfColors(run, request.output);
     if (!request.frames.empty()) return drawSequence(run, request);
     AtomicFile output(request.output);
     const Scene scene = loadScene(run, request.scene, 0);

@@ -29,6 +29,11 @@ const std::vector<std::string> kObjectNames{
     "reflectance", "transparency", "refraction", "tint-length", "extinction", "anisotropy",
     "emission",    "temperature",  "glow",       "scale",       "rotate",     "translate"};
 
+// Those of them that are names, which may hold a slash themselves.
+bool isGridName(const std::string& option) {
+    return option == "grid" || option == "colors" || option == "temperature";
+}
+
 // Options that say what a scene file says of lights.
 const std::vector<std::string> kLightNames{
     "light",   "light-at",    "light-color",      "light-size",
@@ -72,19 +77,43 @@ ObjectRequest readObject(const OptionValues& values, const std::string& file) {
     return request;
 }
 
+// The values between slashes. In names of grids a slash or a backslash after a backslash is a part
+// of the name, and of the name for a single input any slash.
+std::vector<std::string> splitValues(const std::string& name, const std::string& text,
+                                     std::size_t count) {
+    std::vector<std::string> parts;
+    if (!isGridName(name)) {
+        for (const std::string_view part : split(text, '/')) parts.emplace_back(part);
+        return parts;
+    }
+    parts.emplace_back();
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool isEscape =
+            text[i] == '\\' && i + 1 < text.size() && (text[i + 1] == '/' || text[i + 1] == '\\');
+        if (text[i] == '/' && count > 1) {
+            parts.emplace_back();
+        } else {
+            parts.back() += text[isEscape ? ++i : i];
+        }
+    }
+    return parts;
+}
+
 // The settings of object i of `count`, of which the options give one for all or one for each.
 OptionValues partOf(const CommandLine& line, std::size_t i, std::size_t count) {
     OptionValues part(line.title());
     for (const std::string& name : kObjectNames) {
         const auto given = line.text(name);
         if (!given) continue;
-        const auto parts = split(*given, '/');
+        const std::vector<std::string> parts = splitValues(name, *given, count);
         if (parts.size() != 1 && parts.size() != count) {
-            line.fail(name, "one value, or one for each of the " +
-                                formatCount(static_cast<std::int64_t>(count), "input", "inputs") +
-                                " with slashes between them");
+            line.fail(name,
+                      "one value, or one for each of the " +
+                          formatCount(static_cast<std::int64_t>(count), "input", "inputs") +
+                          " with slashes between them" +
+                          (isGridName(name) ? ", and a backslash before a slash in a name" : ""));
         }
-        part.set(name, std::string(parts[parts.size() == 1 ? 0 : i]));
+        part.set(name, parts[parts.size() == 1 ? 0 : i]);
     }
     return part;
 }
@@ -143,6 +172,7 @@ Light readLight(const OptionValues& values) {
 void readSceneFile(const CommandLine& line, const std::string& path,
                    const std::vector<std::string>& pictureNames, SceneRequest& request) {
     const SceneFile file(path);
+    request.file = file.path();
     for (const auto& names : {kObjectNames, kLightNames}) {
         for (const std::string& name : names) {
             if (!line.has(name)) continue;
@@ -157,6 +187,7 @@ void readSceneFile(const CommandLine& line, const std::string& path,
         const auto grids = values.text("file");
         if (!grids) throw Error(ErrorKind::Input, values.title() + "file is missing");
         request.objects.push_back(readObject(values, file.beside(*grids)));
+        request.objects.back().place = values.title().substr(0, values.title().size() - 1);
     }
     if (request.objects.empty()) {
         throw Error(ErrorKind::Input, "'" + path + "' has no objects; expected a list of them");
@@ -195,7 +226,9 @@ void readSceneFile(const CommandLine& line, const std::string& path,
         }
         readPictureOptions(values);  // refuses what cannot be, by the file's name
         for (const auto& [name, value] : values.all()) {
-            if (!request.picture.has(name)) request.picture.set(name, value, file.path());
+            if (request.picture.has(name)) continue;
+            request.picture.set(name, value, file.path());
+            request.places[name] = std::string(group) + "." + name;
         }
     }
 }
@@ -219,7 +252,14 @@ void loadGrids(CommandRun& run, const ObjectRequest& request, const std::string&
     if (isVolume && request.temperatures != "none") {
         object.temperatures = findFloatGrid(grids, request.temperatures, "temperature", file);
     }
-    place(object, request.placement);
+    object.name = "'" + file + "'";
+    if (!request.place.empty()) object.name = request.place + " (" + object.name + ")";
+    try {
+        place(object, request.placement);
+    } catch (const Error& error) {
+        throw Error(request.place.empty() ? error.kind() : ErrorKind::Input,
+                    object.name + ": " + error.what());
+    }
     run.say("read     " + file + ": grid '" + object.grid->getName() + "', " +
             formatCount(static_cast<std::int64_t>(object.grid->activeVoxelCount()), "active voxel",
                         "active voxels") +
@@ -276,7 +316,9 @@ std::vector<OptionEntry> sceneEntries() {
     const std::string light = "Light";
     return {
         {"grid", 0, "NAME", "density, or the only one of floats",
-         "Which grid to draw; NAME[1] is the second one of that name.", object},
+         "Which grid to draw; NAME[1] is the second one of that name. Of several inputs a slash or "
+         "a backslash in a name has a backslash before it.",
+         object},
         {"mode",
          0,
          "KIND",

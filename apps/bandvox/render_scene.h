@@ -7,6 +7,7 @@
 #include <bandvox/render/placement.h>
 #include <bandvox/render/scene.h>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +16,8 @@ namespace bandvox::app {
 
 /// A grid of a file that is to be seen, and how.
 struct ObjectRequest {
-    std::string file;  ///< may hold a pattern for the number of a frame
+    std::string file;   ///< may hold a pattern for the number of a frame
+    std::string place;  ///< in a scene file, for errors; empty if there is none
     std::optional<std::string> grid;
     std::optional<std::string> colors;        ///< name of the grid of colours; "none" for none
     std::optional<std::string> temperatures;  ///< name of the grid of temperatures; the same
@@ -29,6 +31,8 @@ struct SceneRequest {
     std::vector<Light> lights;
     Environment environment;
     OptionValues picture;  ///< settings of picture and camera, those of a scene file included
+    std::string file;      ///< the scene file; empty if there is none
+    std::map<std::string, std::string> places;  ///< of those settings in it, as camera.eye
 };
 
 /// The options of `render` that are about what is seen.

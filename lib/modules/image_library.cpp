@@ -16,9 +16,12 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <ostream>
+#include <sstream>
+#include <string>
 
 namespace bandvox {
 
@@ -43,12 +46,20 @@ class StreamProxy final : public OIIO::Filesystem::IOProxy {
     }
     std::size_t write(const void* bytes, std::size_t size) override {
         m_pos += static_cast<std::int64_t>(size);
+        if (mIsAbandoned) {
+            mHasLeftOut = true;
+            return size;
+        }
         return noted(static_cast<bool>(mStream.write(static_cast<const char*>(bytes),
                                                      static_cast<std::streamsize>(size))))
                    ? size
                    : 0;
     }
     void flush() const override { mStream.flush(); }
+
+    // Leaves out what is written from now on, as of a picture that is given up.
+    void abandon() { mIsAbandoned = true; }
+    bool hasLeftOut() const { return mHasLeftOut; }
 
     // What went wrong first; 0 if nothing did.
     int failure() const { return mFailure; }
@@ -61,18 +72,56 @@ class StreamProxy final : public OIIO::Filesystem::IOProxy {
 
     std::ostream& mStream;
     int mFailure = 0;
+    bool mIsAbandoned = false;
+    bool mHasLeftOut = false;
 };
 
-// From one colour space to another, if the configuration knows both.
-OIIO::ColorProcessorHandle colorProcessor(const char* from, const char* to) {
-    static const OIIO::ColorConfig config;
-    return config.createColorProcessor(from, to);
+constexpr const char* kLinear = "linear";
+constexpr const char* kCoded = "sRGB";
+
+// The configuration that the environment names, else what is built in.
+class ColorConfiguration {
+  public:
+    ColorConfiguration() {
+        // All fall back to what is built in; but for a file of raw data they keep why.
+        std::string why = mConfig.geterror();
+        if (why.empty() && mConfig.configname() == "built-in") why = "it knows raw data alone";
+        if (why.empty()) {
+            mConfig.createColorProcessor(kLinear, kCoded);
+            why = mConfig.geterror();
+        }
+        const char* const name = std::getenv("OCIO");
+        if (name == nullptr || *name == '\0' || why.empty()) return;
+        std::ostringstream fault;
+        fault << "'" << name
+              << "', which the variable OCIO names, is no colour configuration that a .png can be "
+                 "written by ("
+              << why << "); it is written by the sRGB that is built in";
+        mFault = fault.str();
+    }
+
+    // From one colour space to another, if the configuration knows both.
+    OIIO::ColorProcessorHandle processor(const char* from, const char* to) const {
+        return mConfig.createColorProcessor(from, to);
+    }
+
+    // Why the one that the environment names is not used; empty if it is.
+    const std::string& fault() const { return mFault; }
+
+  private:
+    OIIO::ColorConfig mConfig;
+    std::string mFault;
+};
+
+const ColorConfiguration& colorConfiguration() {
+    static const ColorConfiguration configuration;
+    return configuration;
 }
 
 // Changes the colours of pixels in place; alpha stays.
 void convertColors(std::vector<float>& pixels, const OIIO::ImageSpec& spec, const char* from,
                    const char* to) {
-    const OIIO::ColorProcessorHandle processor = colorProcessor(from, to);
+    const OIIO::ColorProcessorHandle processor = colorConfiguration().processor(from, to);
     if (!processor) {
         throw Error(ErrorKind::Runtime,
                     std::string("OpenImageIO's colour configuration (see the variable OCIO) has no "
@@ -90,15 +139,33 @@ std::uint8_t eightBits(float value) {
     return static_cast<std::uint8_t>(std::lround(255 * (value > 0 ? std::min(value, 1.0F) : 0)));
 }
 
-bool writeStrips(OIIO::ImageOutput& output, const PngRows& image) {
+// Gives up a picture of which the rows from `top` on are missing. libpng says on the standard
+// error, however it is closed, that nothing came of a file of which it holds all rows back: it gets
+// black ones until it puts some out.
+void giveUp(OIIO::ImageOutput& output, StreamProxy& proxy, const PngRows& image, int top) {
+    proxy.abandon();
+    const std::vector<std::uint8_t> black(4 * static_cast<std::size_t>(image.width) * kStripRows);
+    while (top < image.height && !proxy.hasLeftOut()) {
+        const int bottom = std::min(top + kStripRows, image.height);
+        if (!output.write_scanlines(top, bottom, 0, OIIO::TypeDesc::UINT8, black.data())) return;
+        top = bottom;
+    }
+}
+
+bool writeStrips(OIIO::ImageOutput& output, StreamProxy& proxy, const PngRows& image) {
     std::vector<float> pixels;
     std::vector<std::uint8_t> bytes;
     for (int top = 0; top < image.height; top += kStripRows) {
         const int bottom = std::min(top + kStripRows, image.height);
         pixels.resize(4 * static_cast<std::size_t>(image.width) * (bottom - top));
-        image.rows(top, bottom, pixels);
-        OIIO::ImageSpec spec(image.width, bottom - top, 4, OIIO::TypeDesc::FLOAT);
-        convertColors(pixels, spec, "linear", "sRGB");
+        try {
+            image.rows(top, bottom, pixels);
+            const OIIO::ImageSpec spec(image.width, bottom - top, 4, OIIO::TypeDesc::FLOAT);
+            convertColors(pixels, spec, kLinear, kCoded);
+        } catch (...) {
+            giveUp(output, proxy, image, top);
+            throw;
+        }
         bytes.resize(pixels.size());
         std::transform(pixels.begin(), pixels.end(), bytes.begin(), eightBits);
         if (!output.write_scanlines(top, bottom, 0, OIIO::TypeDesc::UINT8, bytes.data())) {
@@ -109,7 +176,7 @@ bool writeStrips(OIIO::ImageOutput& output, const PngRows& image) {
 }
 
 // Returns what went wrong, or nothing.
-std::string encode(const PngRows& image, OIIO::Filesystem::IOProxy& proxy) {
+std::string encode(const PngRows& image, StreamProxy& proxy) {
     OIIO::ImageSpec spec(image.width, image.height, 4, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
     spec.attribute("oiio:UnassociatedAlpha", 1);
@@ -119,7 +186,8 @@ std::string encode(const PngRows& image, OIIO::Filesystem::IOProxy& proxy) {
     const auto output = OIIO::ImageOutput::create("picture.png", &proxy);
     if (!output) return OIIO::geterror();
     if (!output->supports("ioproxy")) return "OpenImageIO cannot write it through this library";
-    if (!output->open("picture.png", spec) || !writeStrips(*output, image) || !output->close()) {
+    if (!output->open("picture.png", spec) || !writeStrips(*output, proxy, image) ||
+        !output->close()) {
         return output->geterror();
     }
     return {};
@@ -157,6 +225,8 @@ class OpenImageIo final : public ImageLibrary {
         config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
         return readCoded(OIIO::ImageInput::open(name, &config).get(), double(bytes.size()), guard);
     }
+
+    std::string colorFault() const override { return colorConfiguration().fault(); }
 
     WriteFailure writePng(std::ostream& stream, const PngRows& image) const override {
         StreamProxy proxy(stream);
@@ -261,7 +331,7 @@ class OpenImageIo final : public ImageLibrary {
         if (space == "sRGB" || (space.empty() && isInteger)) {
             const OIIO::ImageSpec floats(image.width, image.height, image.channels,
                                          OIIO::TypeDesc::FLOAT);
-            convertColors(image.values, floats, "sRGB", "linear");
+            convertColors(image.values, floats, kCoded, kLinear);
         }
         return image;
     }

@@ -1,3 +1,6 @@
+#include "stop_after.h"
+
+#include <bandvox/core/atomic_file.h>
 #include <bandvox/core/error.h>
 #include <bandvox/core/memory.h>
 #include <bandvox/render/image.h>
@@ -106,6 +109,24 @@ TEST_F(ImageFile, WritesEveryChannelOfAnExr) {
         expect(positions[c], OIIO::TypeDesc::FLOAT, image.position, 3, c, 0);
     }
     EXPECT_EQ(channels.size(), 11u);
+}
+
+// libpng itself would speak of the rows that are missing.
+TEST_F(ImageFile, APngThatIsGivenUpLeavesNothingAndSaysNothing) {
+    const Image image = sampleImage(90, 200);
+    for (int strips = 0; strips < 4; ++strips) {
+        bandvox::StopAfter progress(strips);
+        testing::internal::CaptureStderr();
+        try {
+            bandvox::AtomicFile file(mFolder / "picture.png");
+            writeImage(file, image, {}, progress);
+            ADD_FAILURE() << "nothing was thrown after " << strips;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::Interrupted) << error.what();
+        }
+        EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << strips;
+        EXPECT_EQ(filesInFolder(), 0u);
+    }
 }
 
 TEST_F(ImageFile, WritesTheChannelsAskedFor) {

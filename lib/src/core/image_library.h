@@ -70,6 +70,10 @@ class ImageLibrary {
     virtual CodedPixels readCoded(std::span<const std::byte> bytes, const std::string& name,
                                   const PixelGuard& guard) const = 0;
 
+    /// Why the colour configuration of the environment variable OCIO is not used by writePng, with
+    /// its name; empty if it is, or if there is none.
+    virtual std::string colorFault() const = 0;
+
     /// Writes 8-bit sRGB with alpha.
     virtual WriteFailure writePng(std::ostream& stream, const PngRows& image) const = 0;
 

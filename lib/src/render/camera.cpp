@@ -18,6 +18,8 @@ namespace {
 
 // Room left around a framed object, relative to its size in the picture.
 constexpr double kFrameMargin = 1.04;
+// The same around what is faint: half a pixel of a picture of 128.
+constexpr double kFaintMargin = 1.008;
 // Between the eye and a framed object, relative to the object's depth.
 constexpr double kLeastDistance = 0.1;
 
@@ -160,6 +162,11 @@ Fit fit(const Reach& reach, std::size_t axis, bool centered) {
     return {0, std::max(high, -low)};
 }
 
+// The reach of others around a middle that is there; minus infinity if there are none.
+double reachAround(double middle, const Reach& reach, std::size_t axis) {
+    return std::max(reach.high[axis] - middle, middle - reach.low[axis]);
+}
+
 }  // namespace
 
 void requireValid(const CameraOptions& options) {
@@ -181,7 +188,7 @@ Camera::Camera(const CameraOptions& options, int width, int height, const openvd
     : Camera(options, width, height, cornersOf(object)) {}
 
 Camera::Camera(const CameraOptions& options, int width, int height,
-               std::span<const openvdb::Vec3d> object)
+               std::span<const openvdb::Vec3d> object, std::span<const openvdb::Vec3d> faint)
     : mProjection(options.projection), mPixelsWide(width), mPixelsHigh(height) {
     // Refuse what defines no view.
     const bool perspective = mProjection == CameraOptions::Projection::Perspective;
@@ -205,6 +212,10 @@ Camera::Camera(const CameraOptions& options, int width, int height,
     const Reach reach = reachOf(object, lookat, *this, {tangent, tangent * aspect});
     const Fit across = fit(reach, 0, centered);
     const Fit along = fit(reach, 1, centered);
+    const double faintTangent = perspective ? mHalfWidth / kFaintMargin : 0;
+    const Reach faintReach = reachOf(faint, lookat, *this, {faintTangent, faintTangent * aspect});
+    const double faintAcross = reachAround(across.middle, faintReach, 0);
+    const double faintAlong = reachAround(along.middle, faintReach, 1);
     const double near = object.empty() ? 0 : reach.near;
     const double far = object.empty() ? 0 : reach.far;
     double distance = 0;
@@ -212,12 +223,17 @@ Camera::Camera(const CameraOptions& options, int width, int height,
         distance = std::max(across.reach / tangent, along.reach / (tangent * aspect));
         // What ends in a point towards the eye must not reach behind it.
         distance = std::max(distance, kLeastDistance * (far - near) - near);
+        distance = std::max({distance, faintAcross / faintTangent,
+                             faintAlong / (faintTangent * aspect), -faintReach.near});
     } else {
         double fitted = std::max(across.reach, along.reach / aspect);
         // A line that is seen along itself has no width.
         if (!(fitted > 0)) fitted = far - near;
-        mHalfWidth = options.frame > 0 ? 0.5 * options.frame : kFrameMargin * fitted;
-        distance = std::max(distance, fitted - near);
+        const double faintlyFitted = std::max(faintAcross, faintAlong / aspect);
+        mHalfWidth = options.frame > 0
+                         ? 0.5 * options.frame
+                         : std::max(kFrameMargin * fitted, kFaintMargin * faintlyFitted);
+        distance = std::max({distance, fitted - near, -faintReach.near});
     }
     mHalfHeight = mHalfWidth * aspect;
     mEye = options.eye.value_or(lookat - distance * mForward + across.middle * mRight +

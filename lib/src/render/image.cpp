@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <sstream>
@@ -115,6 +116,12 @@ WriteFailure encode(std::ostream& stream, const Image& image, const Encoding& en
 bool isImageFile(const std::filesystem::path& path) {
     const std::string extension = extensionOf(path);
     return extension == ".png" || extension == ".exr";
+}
+
+std::string colorConfigurationFault() {
+    // Without one nothing needs to be loaded.
+    const char* const name = std::getenv("OCIO");
+    return name == nullptr || *name == '\0' ? "" : imageLibrary().colorFault();
 }
 
 void writeImage(AtomicFile& file, const Image& image, const ImageChannels& channels,

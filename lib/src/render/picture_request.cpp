@@ -10,6 +10,8 @@
 #include <limits>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace bandvox {
 
@@ -33,11 +35,84 @@ void requireColor(const char* what, const openvdb::Vec3d& color) {
     for (int c = 0; c < 3; ++c) requireInRange(what, color[c], 0.0, 1e6);
 }
 
+using DensityLeaf = openvdb::FloatTree::LeafNodeType;
+using Points = std::vector<openvdb::Vec3d>;
+
+// Places this many voxels from a node have no part in its value where a grid is read by averages:
+// half the width of a cubic B-spline.
+constexpr double kAverageReach = 2;
+
+// The corners, world units, of boxes that end `around` voxels beyond the centres of voxels: of a
+// box of each leaf, boxOf(leaf), and of the tiles from `tile` on that have a part, takes(value).
+template <typename BoxOf, typename Tile, typename Takes>
+Points cornersOfNodes(const openvdb::FloatGrid& grid, double around, const Progress& progress,
+                      const BoxOf& boxOf, Tile tile, const Takes& takes) {
+    const auto add = [&](const openvdb::CoordBBox& voxels, Points& points) {
+        if (voxels.empty()) return;
+        for (int i = 0; i < 8; ++i) {
+            openvdb::Vec3d corner;
+            for (int axis = 0; axis < 3; ++axis) {
+                corner[axis] = (i >> axis & 1) != 0 ? voxels.max()[axis] + around
+                                                    : voxels.min()[axis] - around;
+            }
+            points.push_back(grid.indexToWorld(corner));
+        }
+    };
+    std::vector<const DensityLeaf*> leaves;
+    grid.tree().getNodes(leaves);
+    constexpr std::size_t kTogether = 4096;
+    std::vector<Points> parts((leaves.size() + kTogether - 1) / kTogether);
+    parallelFor(static_cast<std::int64_t>(parts.size()), [&](std::int64_t i) {
+        progress.throwIfInterrupted();
+        const auto k = static_cast<std::size_t>(i);
+        const std::size_t end = std::min((k + 1) * kTogether, leaves.size());
+        parts[k].reserve(8 * (end - k * kTogether));
+        for (std::size_t leaf = k * kTogether; leaf < end; ++leaf) {
+            add(boxOf(*leaves[leaf]), parts[k]);
+        }
+    });
+    Points points;
+    points.reserve(8 * leaves.size());
+    for (const Points& part : parts) points.insert(points.end(), part.begin(), part.end());
+    tile.setMaxDepth(Tile::LEAF_DEPTH - 1);
+    for (; tile; ++tile) {
+        if (takes(*tile)) add(tile.getBoundingBox(), points);
+    }
+    return points;
+}
+
+// How far a density reaches that is read by averages, which count inactive voxels as well.
+Points pointsOfAverages(const openvdb::FloatGrid& grid, const Progress& progress) {
+    const auto boxOf = [](const DensityLeaf& leaf) {
+        openvdb::CoordBBox box;
+        const float* values = leaf.buffer().data();
+        for (openvdb::Index i = 0; i < DensityLeaf::SIZE; ++i) {
+            if (values[i] > 0) box.expand(leaf.origin() + DensityLeaf::offsetToLocalCoord(i));
+        }
+        return box;
+    };
+    return cornersOfNodes(grid, kAverageReach, progress, boxOf, grid.tree().cbeginValueAll(),
+                          [](float value) { return value > 0; });
+}
+
+void append(Points& points, Points more) {
+    if (points.empty()) {
+        points = std::move(more);
+    } else {
+        points.insert(points.end(), more.begin(), more.end());
+    }
+}
+
 }  // namespace
 
 void failNotFinite(const openvdb::FloatGrid& grid) {
     throw Error(ErrorKind::Input, "the grid \"" + grid.getName() +
                                       "\" has values that are not finite; expected a density");
+}
+
+void failNamed(const SceneObject& object, const Error& error) {
+    const std::string of = object.name.empty() ? "" : object.name + ": ";
+    throw Error(error.kind(), of + error.what());
 }
 
 void requireValid(const PictureOptions& options) {
@@ -154,14 +229,19 @@ void requireDrawable(const openvdb::FloatGrid& grid) {
     if (!std::isfinite(grid.background())) failNotFinite(grid);
 }
 
+bool isAboveBackground(double iso, float background) {
+    return static_cast<float>(0.5 * (iso + background)) > background;
+}
+
 double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata>& metadata,
              const std::optional<double>& asked) {
     const double iso = asked.value_or(metadata ? metadata->iso : 0.5);
-    if (!std::isfinite(iso) || !(iso > grid.background())) {
+    if (!std::isfinite(iso) || !isAboveBackground(iso, grid.background())) {
         std::ostringstream message;
         const bool isStored = !asked && metadata;
         message << "the iso-value " << (isStored ? "stored in the grid " : "") << "is " << iso
-                << "; it must be above the grid's background, " << grid.background();
+                << "; it must be above the grid's background, " << grid.background()
+                << (iso > grid.background() ? ", by more than a float is rounded" : "");
         throw Error(asked ? ErrorKind::Usage : ErrorKind::Input, message.str());
     }
     return iso;
@@ -174,51 +254,23 @@ bool needsFraming(const CameraOptions& camera) {
 }
 
 std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid, const Progress& progress) {
-    using Points = std::vector<openvdb::Vec3d>;
-    const auto add = [&](const openvdb::CoordBBox& voxels, Points& points) {
-        if (voxels.empty()) return;
-        for (int i = 0; i < 8; ++i) {
-            openvdb::Vec3d corner;
-            for (int axis = 0; axis < 3; ++axis) {
-                corner[axis] =
-                    (i >> axis & 1) != 0 ? voxels.max()[axis] + 0.5 : voxels.min()[axis] - 0.5;
-            }
-            points.push_back(grid.indexToWorld(corner));
-        }
+    const auto boxOf = [](const DensityLeaf& leaf) {
+        openvdb::CoordBBox box;
+        leaf.evalActiveBoundingBox(box);
+        return box;
     };
-    std::vector<const openvdb::FloatTree::LeafNodeType*> leaves;
-    grid.tree().getNodes(leaves);
-    constexpr std::size_t kTogether = 4096;
-    std::vector<Points> parts((leaves.size() + kTogether - 1) / kTogether);
-    parallelFor(static_cast<std::int64_t>(parts.size()), [&](std::int64_t i) {
-        progress.throwIfInterrupted();
-        const auto k = static_cast<std::size_t>(i);
-        const std::size_t end = std::min((k + 1) * kTogether, leaves.size());
-        parts[k].reserve(8 * (end - k * kTogether));
-        for (std::size_t leaf = k * kTogether; leaf < end; ++leaf) {
-            openvdb::CoordBBox box;
-            leaves[leaf]->evalActiveBoundingBox(box);
-            add(box, parts[k]);
-        }
-    });
-    Points points;
-    points.reserve(8 * leaves.size());
-    for (const Points& part : parts) points.insert(points.end(), part.begin(), part.end());
-    auto tile = grid.cbeginValueOn();
-    tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
-    for (; tile; ++tile) add(tile.getBoundingBox(), points);
-    return points;
+    return cornersOfNodes(grid, 0.5, progress, boxOf, grid.cbeginValueOn(),
+                          [](float /*value*/) { return true; });
 }
 
-std::vector<openvdb::Vec3d> pointsToFrame(const Scene& scene, const Progress& progress) {
-    std::vector<openvdb::Vec3d> points;
+FramedPoints pointsToFrame(const Scene& scene, const Progress& progress) {
+    FramedPoints points;
     for (const SceneObject& object : scene.objects) {
-        std::vector<openvdb::Vec3d> active = activePoints(*object.grid, progress);
-        if (points.empty()) {
-            points = std::move(active);
-        } else {
-            points.insert(points.end(), active.begin(), active.end());
-        }
+        append(points.active, activePoints(*object.grid, progress));
+        // What bandvox has band-limited is active as far as it is more than nothing.
+        const bool isAveraged =
+            object.kind == SceneObject::Kind::Volume && !densityMetadata(*object.grid);
+        if (isAveraged) append(points.faint, pointsOfAverages(*object.grid, progress));
     }
     return points;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bandvox/core/error.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/render/density_to_image.h>
 
@@ -16,10 +17,17 @@ void requireDrawable(const openvdb::FloatGrid& grid);
 /// Throws Error(ErrorKind::Input), for a grid that has values that are not finite.
 [[noreturn]] void failNotFinite(const openvdb::FloatGrid& grid);
 
+/// True if a float can be between a background and an iso-value above it. Else blocks of nothing
+/// but background would be looked at for a surface.
+bool isAboveBackground(double iso, float background);
+
 /// The density that is the surface. Throws unless it is above the background:
 /// Error(ErrorKind::Usage) if it comes from the options, Error(ErrorKind::Input) otherwise.
 double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata>& metadata,
              const std::optional<double>& iso);
+
+/// Throws an error about an object: what it says begins with the object's name.
+[[noreturn]] void failNamed(const SceneObject& object, const Error& error);
 
 /// The shortest side of a voxel, world units.
 double shortestVoxelSide(const openvdb::FloatGrid& grid);
@@ -34,9 +42,12 @@ bool needsFraming(const CameraOptions& camera);
 std::vector<openvdb::Vec3d> activePoints(const openvdb::FloatGrid& grid,
                                          const Progress& progress = silentProgress());
 
-/// The same of all objects of a scene.
-std::vector<openvdb::Vec3d> pointsToFrame(const Scene& scene,
-                                          const Progress& progress = silentProgress());
+/// Points to frame in a picture, world units.
+struct FramedPoints {
+    std::vector<openvdb::Vec3d> active;  ///< activePoints of all objects of a scene
+    std::vector<openvdb::Vec3d> faint;   ///< how far the averages reach that volumes are read by
+};
+FramedPoints pointsToFrame(const Scene& scene, const Progress& progress = silentProgress());
 
 /// Throws Error(ErrorKind::Result), for a grid whose values reach no more than `maximum`.
 [[noreturn]] void failEmpty(double maximum, double iso);

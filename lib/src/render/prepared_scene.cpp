@@ -1,5 +1,9 @@
 #include "render/prepared_scene.h"
 
+#include "render/picture_request.h"
+
+#include <bandvox/core/error.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -41,10 +45,14 @@ PreparedScene::PreparedScene(const Scene& scene, const PictureOptions& options, 
     for (const SceneObject& object : scene.objects) {
         progress.throwIfInterrupted();
         if (options.allowEmpty && object.grid->evalActiveVoxelBoundingBox().empty()) continue;
-        if (object.kind == SceneObject::Kind::Surface) {
-            mSurfaces.push_back(std::make_unique<SurfaceObject>(object, options));
-        } else {
-            mVolumes.push_back(std::make_unique<VolumeObject>(object, options));
+        try {
+            if (object.kind == SceneObject::Kind::Surface) {
+                mSurfaces.push_back(std::make_unique<SurfaceObject>(object, options));
+            } else {
+                mVolumes.push_back(std::make_unique<VolumeObject>(object, options));
+            }
+        } catch (const Error& error) {
+            failNamed(object, error);
         }
         progress.advance();
     }
@@ -58,6 +66,21 @@ Vec3d PreparedScene::environmentAlong(const Vec3d& direction) const {
 Vec3d PreparedScene::environmentOn(const Vec3d& normal) const {
     if (!mEnvironment.map) return mEnvironment.color;
     return mEnvironment.color * mEnvironment.map->irradiance(normal);
+}
+
+std::string PreparedScene::whyEmpty() const {
+    std::string all;
+    const auto add = [&all](const std::string& why) {
+        if (!all.empty()) all += "; ";
+        all += why;
+    };
+    for (const auto& surface : mSurfaces) {
+        if (surface->maximum() < surface->threshold()) add(surface->whyEmpty());
+    }
+    for (const auto& volume : mVolumes) {
+        if (volume->empty()) add(volume->whyEmpty());
+    }
+    return "nothing to see: " + all;
 }
 
 SceneProbes PreparedScene::probes() const {

@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace bandvox {
@@ -57,6 +58,9 @@ class PreparedScene {
     const std::vector<std::unique_ptr<SurfaceObject>>& surfaces() const { return mSurfaces; }
     const std::vector<std::unique_ptr<VolumeObject>>& volumes() const { return mVolumes; }
     const Environment& environment() const { return mEnvironment; }
+
+    /// Which objects have no value that is seen, in words.
+    std::string whyEmpty() const;
 
     /// The light from around that comes from a direction.
     openvdb::Vec3d environmentAlong(const openvdb::Vec3d& direction) const;

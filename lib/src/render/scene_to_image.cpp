@@ -38,9 +38,13 @@ constexpr int kPreviewParts = 64;
 constexpr double kLeastCoverage = 1e-3;
 
 Camera makeCamera(const Scene& scene, const PictureOptions& options) {
-    return Camera(options.camera, options.width, options.height,
-                  needsFraming(options.camera) ? pointsToFrame(scene)
-                                               : std::vector<Vec3d>{*options.camera.lookat});
+    FramedPoints framed;
+    if (needsFraming(options.camera)) {
+        framed = pointsToFrame(scene);
+    } else {
+        framed.active = {*options.camera.lookat};
+    }
+    return Camera(options.camera, options.width, options.height, framed.active, framed.faint);
 }
 
 // Draws pixels, from many threads.
@@ -192,13 +196,13 @@ void drawWithPreview(Painter& painter, Image& image, const PictureOptions& optio
 
 // Says why nothing is seen.
 [[noreturn]] void failUnseen(const PreparedScene& scene, std::int64_t rays) {
-    std::ostringstream message;
-    if (scene.surfaces().size() == 1 && scene.volumes().empty()) {
-        const SurfaceObject& surface = *scene.surfaces().front();
-        if (surface.maximum() < surface.threshold()) {
-            throw Error(ErrorKind::Result, surface.whyEmpty());
-        }
+    const bool isUnreached =
+        std::all_of(scene.surfaces().begin(), scene.surfaces().end(),
+                    [](const auto& surface) { return surface->maximum() < surface->threshold(); });
+    if (isUnreached && scene.volumes().empty()) {
+        throw Error(ErrorKind::Result, scene.whyEmpty());
     }
+    std::ostringstream message;
     message << "nothing to see: none of " << rays << " lines of sight ";
     if (scene.volumes().empty()) {
         message << "meets the surface; expected the camera to face it";
@@ -224,10 +228,7 @@ RenderResult sceneToImage(const Scene& scene, const PictureOptions& options, Pro
     requireValid(scene);
     const PreparedScene prepared(scene, options, progress);
     if (!options.allowEmpty && isEmpty(prepared)) {
-        if (prepared.surfaces().size() == 1 && prepared.volumes().empty()) {
-            throw Error(ErrorKind::Result, prepared.surfaces().front()->whyEmpty());
-        }
-        throw Error(ErrorKind::Result, "nothing to see: no object has a density that is seen");
+        throw Error(ErrorKind::Result, prepared.whyEmpty());
     }
     const bool hasObjects = !prepared.surfaces().empty() || !prepared.volumes().empty();
     // The environment may be seen by a camera that needs no object.

@@ -163,7 +163,7 @@ DrawableGrid makeDrawable(const openvdb::FloatGrid::ConstPtr& grid,
     // Distances are negative inside.
     drawable.metadata.reset();
     const double distance = iso.value_or(0);
-    if (!(distance < grid->background())) {
+    if (!isAboveBackground(-distance, -grid->background())) {
         std::ostringstream message;
         message << "the iso-value is " << distance
                 << "; it must be below the level set's background, " << grid->background();

@@ -17,7 +17,8 @@ constexpr double kFlatGradient = 1e-4;
 }  // namespace
 
 SurfaceObject::SurfaceObject(const SceneObject& object, const PictureOptions& options)
-    : mMaterial(object.material),
+    : mName(object.name),
+      mMaterial(object.material),
       mFacets(object.material.roughness),
       mCoat(mFacets, object.material.reflectance),
       mDrawable(makeDrawable(object.grid, object.iso)),
@@ -35,7 +36,7 @@ SurfaceObject::SurfaceObject(const SceneObject& object, const PictureOptions& op
 
 std::string SurfaceObject::whyEmpty() const {
     std::ostringstream message;
-    message << "nothing to see: ";
+    if (!mName.empty()) message << mName << ": ";
     if (mDrawable.isLevelSet) {
         message << "the level set is at least " << -maximum() << ", above the iso-value " << iso();
     } else {

@@ -47,7 +47,7 @@ class SurfaceObject {
     /// The highest value of the grid; below iso, nothing is to be seen.
     double maximum() const { return mBlocks->maximum(); }
     bool empty() const { return mBlocks->empty(); }
-    /// That nothing is to be seen because no value is inside, in words.
+    /// That no value is inside, in words.
     std::string whyEmpty() const;
 
     std::unique_ptr<DensityProbe> probe() const;
@@ -68,6 +68,7 @@ class SurfaceObject {
     Ray toIndex(const Ray& ray) const;
     SurfaceHit toWorld(const RayHit& hit, const Ray& ray) const;
 
+    std::string mName;
     Material mMaterial;
     Facets mFacets;
     CoatReflectance mCoat;

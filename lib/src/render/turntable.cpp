@@ -24,7 +24,7 @@ std::vector<CameraOptions> turntable(const Scene& scene, const PictureOptions& o
     requireValid(options);
     requireValid(scene);
     const ProgressStage stage(progress, "framing", pictures);
-    const std::vector<Vec3d> points = pointsToFrame(scene, progress);
+    const auto [points, faint] = pointsToFrame(scene, progress);
     openvdb::BBoxd box;
     for (const Vec3d& point : points) box.expand(point);
 
@@ -43,7 +43,7 @@ std::vector<CameraOptions> turntable(const Scene& scene, const PictureOptions& o
         if (first.eye) camera.eye = *first.lookat + camera.from;
         cameras.push_back(camera);
         if (points.empty() || first.eye) continue;
-        const Camera framed(camera, options.width, options.height, points);
+        const Camera framed(camera, options.width, options.height, points, faint);
         farthest = std::max(farthest, (framed.eye() - *first.lookat).length());
         widest = std::max(widest, options.width / framed.pixelsPerLength(1));
         progress.advance();

@@ -46,7 +46,8 @@ std::unique_ptr<Reconstruction> readVolume(const openvdb::FloatGrid::ConstPtr& g
 }  // namespace
 
 VolumeObject::VolumeObject(const SceneObject& object, const PictureOptions& options)
-    : mGrid(object.grid),
+    : mName(object.name),
+      mGrid(object.grid),
       mMedium(object.medium),
       mToIndex(indexOfWorld(*object.grid)),
       mVoxel(shortestVoxelSide(*object.grid)) {
@@ -78,6 +79,10 @@ VolumeObject::VolumeObject(const SceneObject& object, const PictureOptions& opti
     }
     mToTemperature = indexOfWorld(*object.temperatures);
     mTemperature = readVolume(object.temperatures, densityMetadata(*object.temperatures), options);
+}
+
+std::string VolumeObject::whyEmpty() const {
+    return (mName.empty() ? "" : mName + ": ") + "no density is above 0";
 }
 
 bool VolumeObject::glows() const {

@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace bandvox {
 
@@ -26,6 +27,8 @@ class VolumeObject {
     VolumeObject(const SceneObject& object, const PictureOptions& options);
 
     bool empty() const { return mBlocks->empty(); }
+    /// That no density is seen, in words.
+    std::string whyEmpty() const;
     const openvdb::FloatGrid& grid() const { return *mGrid; }
     /// The shortest side of a voxel.
     double voxel() const { return mVoxel; }
@@ -57,6 +60,7 @@ class VolumeObject {
         return {mToIndex.transform(ray.origin), mToIndex.transform3x3(ray.direction)};
     }
 
+    std::string mName;
     openvdb::FloatGrid::ConstPtr mGrid;
     Medium mMedium;
     openvdb::Mat4d mToIndex;

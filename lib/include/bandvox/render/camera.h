@@ -41,9 +41,10 @@ class Camera {
 
     /// The same with the points to frame, world units, at least one: what is seen of an object
     /// fills the picture better than what is seen of its box. What is looked at by default is the
-    /// middle of their box.
+    /// middle of their box. `faint`: points that are to be in the picture too, with hardly any
+    /// room around them, as the edge of a fog where it thins out.
     Camera(const CameraOptions& options, int width, int height,
-           std::span<const openvdb::Vec3d> object);
+           std::span<const openvdb::Vec3d> object, std::span<const openvdb::Vec3d> faint = {});
 
     /// The line of sight through a place of the picture, in pixels from its top left corner.
     Ray ray(double x, double y) const;

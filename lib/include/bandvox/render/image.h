@@ -51,6 +51,11 @@ struct ImageChannels {
 /// Extensions that writeImage takes, lower case with the dot.
 bool isImageFile(const std::filesystem::path& path);
 
+/// Why the colour configuration that the environment variable OCIO names is not what a .png is
+/// written by, which is the sRGB that is built in then: it cannot be read, or has no way there from
+/// linear light. Begins with its name; empty if nothing is wrong, or if none is named.
+std::string colorConfigurationFault();
+
 /// Writes a picture, whole or not at all. `.png`: 8-bit sRGB with alpha, by OpenImageIO's colour
 /// management. `.exr`: the channels that are asked for, linear; of a part of a larger picture the
 /// data window, in that one's display window. Throws Error(ErrorKind::Runtime) if it cannot be

@@ -46,6 +46,7 @@ struct SceneObject {
     openvdb::FloatGrid::ConstPtr temperatures;  ///< kelvin; of a volume that glows
     Material material;                          ///< of a surface
     Medium medium;                              ///< of a volume
+    std::string name;  ///< what errors about its grids begin with, as a file's name; may be empty
 };
 
 /// A lamp.

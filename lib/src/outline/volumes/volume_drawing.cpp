@@ -46,7 +46,7 @@ std::vector<std::unique_ptr<SurfaceObject>> objectsOf(const std::vector<OutlineV
         object.iso = volume.iso;
         objects.push_back(std::make_unique<SurfaceObject>(object, picture));
         if (objects.back()->empty()) {
-            throw Error(ErrorKind::Result, objects.back()->whyEmpty());
+            throw Error(ErrorKind::Result, "nothing to see: " + objects.back()->whyEmpty());
         }
     }
     return objects;
