@@ -1,5 +1,6 @@
 #include "render/environment.h"
 #include "render/medium_scene.h"
+#include "stop_after.h"
 
 #include <gtest/gtest.h>
 
@@ -28,6 +29,39 @@ Scene blobScene(double sigma, double extinction) {
     scene.objects = {volumeOf(blobGrid(sigma), extinction)};
     scene.environment.color = Vec3d(0.0);
     return scene;
+}
+
+// A single line of sight may take long.
+TEST(MediumTransport, AsksOnALineOfSightWhetherToStop) {
+    for (const auto method : {VolumeOptions::Method::Steps, VolumeOptions::Method::Tracking}) {
+        PictureOptions options;
+        options.volumes.method = method;
+        expectStopsMidway(3, [&](Progress& progress) {
+            MediumScene scene(blobScene(4, 0.01), options, progress);
+            scene.along(kDown);
+        });
+    }
+}
+
+// In the middle of huge tiles the light changes with the optical depth alone, and steps do not
+// follow voxels; at their borders they do.
+TEST(MediumTransport, TakesLongStepsInHugeTiles) {
+    auto grid = openvdb::FloatGrid::create(0);
+    grid->tree().addTile(3, openvdb::Coord(0), 1.0F, true);
+    grid->tree().addTile(3, openvdb::Coord(4096, 0, 0), 2.0F, true);
+    for (const double extinction : {1e-5, 1e-3, 0.05}) {
+        Scene scene;
+        scene.objects = {volumeOf(grid, extinction)};
+        scene.objects[0].medium.emission = Vec3d(0.7);
+        StopAfter never;
+        MediumScene medium(scene, {}, never);
+        const Ray ray{Vec3d(-1000, 2000, 2100), Vec3d(1, 0, 0)};
+        const double left = std::exp(-extinction * 3 * 4096);
+        EXPECT_NEAR(medium.left(ray), left, 1e-4 + 1e-3 * left) << extinction;
+        const MediumLight seen = medium.along(ray);
+        EXPECT_NEAR(seen.light[1], 0.7 * (1 - left), 1e-3) << extinction;
+        EXPECT_LT(never.asked(), 1500) << extinction;
+    }
 }
 
 TEST(HenyeyGreenstein, IsAllOfTheLightWithItsMeanCosine) {

@@ -20,6 +20,12 @@ constexpr double kNothingLeft = 1e-4;
 // band-limited one but what is near their own frequency, half a cycle per voxel.
 constexpr double kLongSteps = 2;
 
+// Where a volume is the same far around, voxels say nothing: the light changes with the optical
+// depth alone. Steps of this depth see it to 1e-3; in thin volumes they are so many usual ones, as
+// lamps may be near.
+constexpr double kEvenDepth = 1.0 / 16;
+constexpr double kEvenSteps = 256;
+
 // In a block of which most is far thinner than its densest place, random places would be tried for
 // ever: after so many the rest is followed by so many steps.
 constexpr int kMostTries = 2048;
@@ -49,11 +55,12 @@ double henyeyGreenstein(double cosine, double g) {
 }
 
 MediumTransport::MediumTransport(const PreparedScene& scene, const Lamps& lamps,
-                                 const PictureOptions& options)
+                                 const PictureOptions& options, const Progress& progress)
     : mScene(scene),
       mLamps(lamps),
       mTransport(options.transport),
       mMethod(options.volumes.method),
+      mProgress(progress),
       mAround(meanOf(scene.environment())) {
     bool areBandLimited = true;
     for (const auto& volume : scene.volumes()) {
@@ -71,18 +78,26 @@ MediumLight MediumTransport::along(const Ray& ray, double end, const InsideOf& i
                : alongByTracking(ray, end, inside, numbers, probes);
 }
 
-// The parts of a ray in which there is anything of a volume, in order, those that touch joined to
-// one.
+// The steps at a place, in a part of a ray in which the extinction is `most` at most.
+double MediumTransport::stepIn(std::size_t i, const Vec3d& place, double most) const {
+    if (!mScene.volumes()[i]->isEvenAround(place)) return mSteps[i];
+    return mSteps[i] * std::clamp(kEvenDepth / (most * mSteps[i]), 1.0, kEvenSteps);
+}
+
+// The parts of a ray in which there is anything of a volume, in order, those that touch and
+// have the same steps joined to one.
 std::vector<MediumTransport::Interval> MediumTransport::intervalsOf(std::size_t i, const Ray& ray,
                                                                     double end) const {
     std::vector<Interval> found;
-    mScene.volumes()[i]->walk(ray, end, [&](double t0, double t1, double /*most*/) {
+    mScene.volumes()[i]->walk(ray, end, [&](double t0, double t1, double most) {
         t1 = std::min(t1, end);
+        const double step = stepIn(i, ray.origin + 0.5 * (t0 + t1) * ray.direction, most);
         // What rounding leaves between two blocks is no gap.
-        if (!found.empty() && t0 <= found.back().end + 1e-3 * mSteps[i]) {
+        if (!found.empty() && found.back().step == step &&
+            t0 <= found.back().end + 1e-3 * mSteps[i]) {
             found.back().end = std::max(found.back().end, t1);
         } else if (t1 > t0) {
-            found.push_back({t0, t1, mSteps[i]});
+            found.push_back({t0, t1, step});
         }
         return false;
     });
@@ -143,6 +158,7 @@ MediumLight MediumTransport::alongBySteps(const Ray& ray, double end, const Insi
     MediumLight result;
     double seen = 0;
     forEachStep(ray, end, 1, [&](double t, double length) {
+        mProgress.throwIfInterrupted();
         const Vec3d place = ray.origin + t * ray.direction;
         Vec3d light(0.0);
         double extinction = 0;
@@ -175,6 +191,7 @@ MediumLight MediumTransport::alongByTracking(const Ray& ray, double end, const I
     for (int i = 0; i < static_cast<int>(mScene.volumes().size()); ++i) {
         const VolumeObject& volume = *mScene.volumes()[i];
         volume.walk(ray, nearest, [&](double t0, double t1, double most) {
+            mProgress.throwIfInterrupted();
             double t = t0;
             for (int tries = 0; tries < kMostTries; ++tries) {
                 t -= std::log(1 - numbers.next()) / most;

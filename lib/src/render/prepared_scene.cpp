@@ -42,9 +42,9 @@ PreparedScene::PreparedScene(const Scene& scene, const PictureOptions& options, 
         progress.throwIfInterrupted();
         if (options.allowEmpty && object.grid->evalActiveVoxelBoundingBox().empty()) continue;
         if (object.kind == SceneObject::Kind::Surface) {
-            mSurfaces.push_back(std::make_unique<SurfaceObject>(object, options));
+            mSurfaces.push_back(std::make_unique<SurfaceObject>(object, options, progress));
         } else {
-            mVolumes.push_back(std::make_unique<VolumeObject>(object, options));
+            mVolumes.push_back(std::make_unique<VolumeObject>(object, options, progress));
         }
         progress.advance();
     }

@@ -37,9 +37,9 @@ constexpr int kPreviewParts = 64;
 // Volumes that hide less than this of what is behind are not seen.
 constexpr double kLeastCoverage = 1e-3;
 
-Camera makeCamera(const Scene& scene, const PictureOptions& options) {
+Camera makeCamera(const Scene& scene, const PictureOptions& options, const Progress& progress) {
     return Camera(options.camera, options.width, options.height,
-                  needsFraming(options.camera) ? pointsToFrame(scene)
+                  needsFraming(options.camera) ? pointsToFrame(scene, progress)
                                                : std::vector<Vec3d>{*options.camera.lookat});
 }
 
@@ -47,7 +47,7 @@ Camera makeCamera(const Scene& scene, const PictureOptions& options) {
 class Painter {
   public:
     Painter(const PreparedScene& scene, const LightPaths& paths, const Camera& camera,
-            const PictureOptions& options, Image& image)
+            const PictureOptions& options, Image& image, const Progress& progress)
         : mPaths(paths),
           mCamera(camera),
           mOptions(options),
@@ -59,7 +59,7 @@ class Painter {
         for (const auto& surface : scene.surfaces()) {
             mCells.push_back(std::make_unique<ScreenCells>(camera, options.width, options.height,
                                                            margin, surface->blocks(),
-                                                           surface->grid().transform()));
+                                                           surface->grid().transform(), progress));
         }
     }
 
@@ -68,8 +68,8 @@ class Painter {
         std::unique_ptr<SceneProbes> probes = mProbes.take();
         std::int64_t hits = 0;
         for (int row = tile.top; row < tile.bottom; row += every) {
-            progress.throwIfInterrupted();
             for (int column = tile.left; column < tile.right; column += every) {
+                progress.throwIfInterrupted();
                 hits += draw(column, row, *probes);
                 if (every > 1) spread(tile, column, row, every);
             }
@@ -232,9 +232,9 @@ RenderResult sceneToImage(const Scene& scene, const PictureOptions& options, Pro
     const bool hasObjects = !prepared.surfaces().empty() || !prepared.volumes().empty();
     // The environment may be seen by a camera that needs no object.
     if (!hasObjects && needsFraming(options.camera)) return emptyPicture(options);
-    const Camera camera = makeCamera(scene, options);
+    const Camera camera = makeCamera(scene, options, progress);
     const Lamps lamps(scene.lights, camera);
-    const LightPaths paths(prepared, lamps, options);
+    const LightPaths paths(prepared, lamps, options, progress);
 
     // Draw.
     RenderResult result;
@@ -243,7 +243,7 @@ RenderResult sceneToImage(const Scene& scene, const PictureOptions& options, Pro
         describe(result.image, *scene.objects.front().grid, prepared.surfaces().front()->iso());
     }
     describe(result.image, options, camera);
-    Painter painter(prepared, paths, camera, options, result.image);
+    Painter painter(prepared, paths, camera, options, result.image, progress);
     {
         Image& image = result.image;
         const ProgressStage stage(progress, "drawing", tileCount(image.width, image.height));

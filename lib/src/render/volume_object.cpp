@@ -1,5 +1,6 @@
 #include "render/volume_object.h"
 
+#include "grid/copy_box.h"
 #include "render/blackbody.h"
 #include "render/picture_request.h"
 #include "render/surface_field.h"
@@ -26,8 +27,21 @@ constexpr double kNoDepth = 1e-4;
 // Kelvin, beyond which a temperature is none.
 constexpr float kHottest = 1e9F;
 
+// Voxels from a place within which it is asked whether the volume is even.
+constexpr int kEvenHalf = 32;
+
 openvdb::Mat4d indexOfWorld(const openvdb::FloatGrid& grid) {
     return grid.transform().baseMap()->getAffineMap()->getMat4().inverse();
+}
+
+// True if a tile of the tree's root, 4096³ voxels, holds more than nothing.
+bool hasRootTiles(const openvdb::FloatGrid& grid) {
+    auto tile = grid.cbeginValueAll();
+    tile.setMaxDepth(0);
+    for (; tile; ++tile) {
+        if (*tile > 0) return true;
+    }
+    return false;
 }
 
 double longestSide(const openvdb::FloatGrid& grid) {
@@ -45,7 +59,8 @@ std::unique_ptr<Reconstruction> readVolume(const openvdb::FloatGrid::ConstPtr& g
 
 }  // namespace
 
-VolumeObject::VolumeObject(const SceneObject& object, const PictureOptions& options)
+VolumeObject::VolumeObject(const SceneObject& object, const PictureOptions& options,
+                           const Progress& progress)
     : mGrid(object.grid),
       mMedium(object.medium),
       mToIndex(indexOfWorld(*object.grid)),
@@ -65,15 +80,18 @@ VolumeObject::VolumeObject(const SceneObject& object, const PictureOptions& opti
     mExtinction = mMedium.extinction > 0 ? mMedium.extinction : kChosenDepth / longest;
     const auto metadata = densityMetadata(*mGrid);
     mIsBandLimited = metadata.has_value();
+    mHasEvenParts = !object.colors && !object.temperatures && hasRootTiles(*mGrid);
     std::optional<ExponentialFilter> filter;
     if (metadata) filter = ExponentialFilter{metadata->order, metadata->cutoff};
-    mBlocks = std::make_unique<VolumeBlocks>(*mGrid, filter, kNoDepth / (mExtinction * longest));
+    mBlocks = std::make_unique<VolumeBlocks>(*mGrid, filter, kNoDepth / (mExtinction * longest),
+                                             progress);
     if (!mBlocks->finite()) failNotFinite(*mGrid);
     mDensity = readVolume(mGrid, metadata, options);
     if (object.colors) mColors.emplace(object.colors);
     if (!object.temperatures) return;
     requireDrawable(*object.temperatures);
     for (auto kelvin = object.temperatures->cbeginValueOn(); kelvin; ++kelvin) {
+        progress.throwIfInterrupted();
         if (!(std::abs(*kelvin) <= kHottest)) failNotFinite(*object.temperatures);
     }
     mToTemperature = indexOfWorld(*object.temperatures);
@@ -86,6 +104,20 @@ bool VolumeObject::glows() const {
 
 VolumeProbe VolumeObject::probe() const {
     return {mDensity->probe(), mTemperature ? mTemperature->probe() : nullptr};
+}
+
+bool VolumeObject::isEvenAtIndex(const Vec3d& place) const {
+    static_assert(VolumeBlocks::kVisited <= 2 * kEvenHalf);
+    constexpr int kReach = 15;  // what is farther off is nothing in what is read at a place
+    const openvdb::Coord middle = openvdb::Coord::round(place);
+    openvdb::CoordBBox box(middle, middle);
+    box.expand(kEvenHalf + kReach);
+    const openvdb::tree::ValueAccessor<const openvdb::FloatTree, false> values(mGrid->tree());
+    // Most places are in the middle of a single one.
+    constexpr int kRootDepth = 0, kRootTile = openvdb::FloatTree::RootNodeType::ChildNodeType::DIM;
+    const openvdb::Coord tile = box.min() & -kRootTile;
+    if (tile == (box.max() & -kRootTile) && values.getValueDepth(middle) == kRootDepth) return true;
+    return valueOfLargeTiles(values, box).has_value();
 }
 
 double VolumeObject::extinctionAt(const Vec3d& place, VolumeProbe& probe) const {

@@ -3,6 +3,7 @@
 #include "render/object_colors.h"
 #include "render/volume_blocks.h"
 
+#include <bandvox/core/progress.h>
 #include <bandvox/reconstruct/reconstruction.h>
 #include <bandvox/render/picture_options.h>
 #include <bandvox/render/scene.h>
@@ -23,7 +24,8 @@ struct VolumeProbe {
 class VolumeObject {
   public:
     /// Throws as sceneToImage.
-    VolumeObject(const SceneObject& object, const PictureOptions& options);
+    VolumeObject(const SceneObject& object, const PictureOptions& options,
+                 const Progress& progress = silentProgress());
 
     bool empty() const { return mBlocks->empty(); }
     const openvdb::FloatGrid& grid() const { return *mGrid; }
@@ -43,6 +45,12 @@ class VolumeObject {
     /// The light that so much of it shines with that nothing passes.
     openvdb::Vec3d glowAt(const openvdb::Vec3d& place, VolumeProbe& probe) const;
 
+    /// True if the volume is the same within 32 voxels of a place along each axis, which is half of
+    /// what walk() visits at most. Told of volumes with tiles of 4096³ voxels only.
+    bool isEvenAround(const openvdb::Vec3d& place) const {
+        return mHasEvenParts && isEvenAtIndex(mToIndex.transform(place));
+    }
+
     /// Calls `visit(t0, t1, most)` for the parts of a ray, 0 ≤ t ≤ `end`, in which the extinction
     /// is more than nothing, and `most` at most; stops when it returns true.
     template <typename Visitor>
@@ -53,6 +61,8 @@ class VolumeObject {
     }
 
   private:
+    bool isEvenAtIndex(const openvdb::Vec3d& place) const;
+
     Ray toIndex(const Ray& ray) const {
         return {mToIndex.transform(ray.origin), mToIndex.transform3x3(ray.direction)};
     }
@@ -63,6 +73,7 @@ class VolumeObject {
     double mVoxel;
     double mExtinction;
     bool mIsBandLimited;
+    bool mHasEvenParts;  // where isEvenAround can be true
     std::unique_ptr<VolumeBlocks> mBlocks;
     std::unique_ptr<Reconstruction> mDensity;
     std::unique_ptr<Reconstruction> mTemperature;
