@@ -115,6 +115,24 @@ TEST(AveragingReconstruction, IsNothingWhereNothingIsAround) {
     EXPECT_NEAR(average->value(Vec3d(7.5, 7.3, 8.1)), 1, 1e-6);
 }
 
+// Bricks in the middle of large tiles are not copied; that changes nothing.
+TEST(SplineReconstruction, ReadsLargeTilesAsIfTheyWereVoxels) {
+    auto tiles = openvdb::FloatGrid::create(0.5F);
+    tiles->tree().addTile(2, openvdb::Coord(0), 1.0F, true);
+    tiles->tree().addTile(2, openvdb::Coord(128, 0, 0), 1.0F, true);
+    tiles->tree().addTile(2, openvdb::Coord(0, 128, 0), 3.0F, true);
+    const auto voxels = tiles->deepCopy();
+    voxels->tree().voxelizeActiveTiles();
+    const auto read = makeSplineReconstruction(tiles), expected = makeSplineReconstruction(voxels);
+    std::mt19937 random(8);
+    std::uniform_real_distribution<double> uniform(-40, 296);
+    for (int i = 0; i < 300; ++i) {
+        const Vec3d place(uniform(random), uniform(random), 0.4 * uniform(random));
+        ASSERT_EQ(read->value(place), expected->value(place)) << place;
+    }
+    EXPECT_EQ(read->value(Vec3d(126.5, 64.3, 64.2)), 1);
+}
+
 TEST(SplineReconstruction, NeedsAGrid) {
     EXPECT_THROW(makeSplineReconstruction(nullptr), Error);
     EXPECT_THROW(makeAveragingReconstruction(nullptr), Error);

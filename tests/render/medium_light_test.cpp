@@ -1,5 +1,6 @@
 #include "render/environment.h"
 #include "render/medium_scene.h"
+#include "stop_after.h"
 
 #include <gtest/gtest.h>
 
@@ -28,6 +29,18 @@ Scene blobScene(double sigma, double extinction) {
     scene.objects = {volumeOf(blobGrid(sigma), extinction)};
     scene.environment.color = Vec3d(0.0);
     return scene;
+}
+
+// A single line of sight may take long.
+TEST(MediumTransport, AsksOnALineOfSightWhetherToStop) {
+    for (const auto method : {VolumeOptions::Method::Steps, VolumeOptions::Method::Tracking}) {
+        PictureOptions options;
+        options.volumes.method = method;
+        expectStopsMidway(3, [&](Progress& progress) {
+            MediumScene scene(blobScene(4, 0.01), options, progress);
+            scene.along(kDown);
+        });
+    }
 }
 
 TEST(HenyeyGreenstein, IsAllOfTheLightWithItsMeanCosine) {

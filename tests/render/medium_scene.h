@@ -15,11 +15,12 @@ namespace bandvox::render_test {
 /// A scene and what looks along rays through its volumes.
 class MediumScene {
   public:
-    MediumScene(Scene scene, const PictureOptions& options)
+    MediumScene(Scene scene, const PictureOptions& options,
+                const Progress& progress = silentProgress())
         : mCamera(options.camera, 10, 10, std::vector<openvdb::Vec3d>{openvdb::Vec3d(0.0)}),
           mLamps(scene.lights, mCamera),
           mPrepared(scene, options, silentProgress()),
-          mTransport(mPrepared, mLamps, options),
+          mTransport(mPrepared, mLamps, options, progress),
           mProbes(mPrepared.probes()) {}
 
     double left(const Ray& ray, std::uint32_t number = 0,

@@ -1,5 +1,9 @@
 #include "render/surface_blocks.h"
 
+#include "stop_after.h"
+
+#include <bandvox/core/memory.h>
+
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 
@@ -139,6 +143,63 @@ TEST(SurfaceBlocks, NoticesValuesThatAreNotFinite) {
         grid->tree().setValue(Coord(0, 0, 0), value);
         EXPECT_FALSE(SurfaceBlocks(*grid, 0.5).finite()) << value;
     }
+}
+
+// Leaves are needed only for the blocks beside what tiles fill.
+TEST(SurfaceBlocks, TakeMemoryByTheSurfaceOfWhatTilesFill) {
+    for (const int level : {2, 3}) {
+        const int side = level == 2 ? 128 : 4096;
+        auto grid = openvdb::FloatGrid::create(0);
+        for (const int x : {1, 0}) {
+            for (const int y : {0, 1}) {
+                for (int z = 0; z < 4 - level; ++z) {
+                    grid->tree().addTile(level, Coord(side * x, side * y, side * z), 1.0F, true);
+                }
+            }
+        }
+        const SurfaceBlocks blocks(*grid, 0.5);
+        std::size_t leaves = 0;
+        double inside = 0;  // blocks of those that are whole
+        for (const SurfaceBlocks::Group& group : blocks.groups()) {
+            if (group.rows) {
+                ++leaves;
+            } else {
+                inside += std::pow(group.side, 3);
+            }
+        }
+        const std::size_t n = side / 32, xy = 2 * n, z = (4 - level) * n;
+        EXPECT_EQ(leaves, (xy + 2) * (xy + 2) * (z + 2) - xy * xy * z);
+        EXPECT_EQ(inside, 512.0 * xy * xy * z);
+        // The blocks beside the walls between the tiles, too.
+        const openvdb::Vec3d through(side - 0.5, side + 0.25, -10);
+        double length = 0;
+        for (const auto& [t0, t1] : spans(blocks, {through, Vec3d(0, 0, 1)})) length += t1 - t0;
+        EXPECT_NEAR(length, (4 - level) * side + 2 * SurfaceBlocks::kSide, 1e-6);
+    }
+}
+
+// A plate of tiles whose surface alone would take some 80 GB.
+TEST(SurfaceBlocks, RefuseWhatMemoryDoesNotHold) {
+    if (bandvox::availableMemory() > std::int64_t(60) << 30) GTEST_SKIP() << "it has enough";
+    auto grid = openvdb::FloatGrid::create(0);
+    for (int x = 0; x < 100; ++x) {
+        for (int y = 0; y < 100; ++y) {
+            grid->tree().addTile(3, Coord(4096 * x, 4096 * y, 0), 1.0F, true);
+        }
+    }
+    try {
+        const SurfaceBlocks blocks(*grid, 0.5);
+        FAIL() << "nothing was thrown";
+    } catch (const bandvox::Error& error) {
+        EXPECT_EQ(error.kind(), bandvox::ErrorKind::Memory) << error.what();
+    }
+}
+
+TEST(SurfaceBlocks, AskWhetherToStop) {
+    auto grid = openvdb::FloatGrid::create(0);
+    grid->tree().addTile(3, Coord(0), 1.0F, true);
+    bandvox::expectStopsMidway(
+        500, [&](bandvox::Progress& progress) { SurfaceBlocks(*grid, 0.5, progress); });
 }
 
 TEST(SurfaceBlocks, StopsWhenToldTo) {

@@ -1,6 +1,7 @@
 #include "render/volume_blocks.h"
 
 #include "render/ball_scene.h"
+#include "stop_after.h"
 
 #include <bandvox/reconstruct/brick_reconstruction.h>
 
@@ -116,6 +117,39 @@ TEST(VolumeBlocks, BoundWhatIsBetweenTiles) {
         compare(grid, std::nullopt, -4, 20);
         compare(grid, std::nullopt, 100, 140);
     }
+}
+
+// Around tiles of 4096³ voxels no leaves are made: a ray along one of their faces finds whole
+// nodes.
+TEST(VolumeBlocks, TakeNoLeavesAroundTheLargestTiles) {
+    auto grid = openvdb::FloatGrid::create(0);
+    grid->tree().addTile(3, Coord(0), 1.0F, true);
+    grid->tree().addTile(3, Coord(4096, 0, 0), 0.5F, true);
+    const VolumeBlocks blocks(*grid, std::nullopt, kNothing);
+    for (const Vec3d& start : {Vec3d(-200, 50, -2), Vec3d(-200, 4097, 1000)}) {
+        double length = 0;
+        int visits = 0;
+        blocks.walk({start, Vec3d(1, 0, 0)}, 1e30, [&](double t0, double t1, double most) {
+            ++visits;
+            length += t1 - t0;
+            // The higher tile reaches a little into what is beside the lower one.
+            const double x = start[0] + 0.5 * (t0 + t1);
+            EXPECT_NEAR(most, x < 4096 + 64 ? 1 : 0.5, 1e-3) << x;
+            return false;
+        });
+        EXPECT_NEAR(length, 2 * 4096 + 2 * 64, 1e-6);
+        EXPECT_EQ(visits, 2 * 64 + 2);
+    }
+    EXPECT_EQ(boundAt(blocks, Vec3d(1000, 1000, -100)), 0);
+    EXPECT_GE(boundAt(blocks, Vec3d(4095 + 3, 1000, 1000)), 1) << "what is beside a higher one";
+    EXPECT_NEAR(boundAt(blocks, Vec3d(4096 + 100, 1000, 1000)), 0.5, 1e-3);
+}
+
+TEST(VolumeBlocks, AskWhetherToStop) {
+    auto grid = openvdb::FloatGrid::create(0);
+    grid->tree().addTile(3, Coord(0), 1.0F, true);
+    expectStopsMidway(
+        200, [&](Progress& progress) { VolumeBlocks(*grid, std::nullopt, kNothing, progress); });
 }
 
 TEST(VolumeBlocks, LeaveOutWhatIsEmpty) {

@@ -44,4 +44,24 @@ bool copyBox(const openvdb::tree::ValueAccessor<const openvdb::FloatTree, false>
     return isUniform;
 }
 
+std::optional<float> valueOfLargeTiles(
+    const openvdb::tree::ValueAccessor<const openvdb::FloatTree, false>& from,
+    const openvdb::CoordBBox& box) {
+    // Values at this depth or above are those of tiles of 128³ voxels or more: each that a box
+    // meets which is no larger has one of its corners.
+    constexpr int kLargeTile = 1, kSide = 128;
+    const openvdb::Coord size = box.dim();
+    if (std::max({size[0], size[1], size[2]}) > kSide) return std::nullopt;
+    const float first = from.getValue(box.min());
+    for (int i = 0; i < 8; ++i) {
+        const openvdb::Coord corner((i & 1) != 0 ? box.max()[0] : box.min()[0],
+                                    (i & 2) != 0 ? box.max()[1] : box.min()[1],
+                                    (i & 4) != 0 ? box.max()[2] : box.min()[2]);
+        if (from.getValueDepth(corner) > kLargeTile || from.getValue(corner) != first) {
+            return std::nullopt;
+        }
+    }
+    return first;
+}
+
 }  // namespace bandvox

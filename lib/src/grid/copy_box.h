@@ -4,6 +4,7 @@
 #include <openvdb/tree/ValueAccessor.h>
 
 #include <cstddef>
+#include <optional>
 
 namespace bandvox {
 
@@ -12,5 +13,11 @@ namespace bandvox {
 bool copyBox(const openvdb::tree::ValueAccessor<const openvdb::FloatTree, false>& from,
              const openvdb::CoordBBox& box, float* to, std::size_t planePitch,
              std::size_t rowPitch);
+
+/// The value of all voxels of a box, 128 or fewer along each side, that lies in tiles of 128³
+/// voxels or more with one value; nothing if it does not. Looks at eight voxels only.
+std::optional<float> valueOfLargeTiles(
+    const openvdb::tree::ValueAccessor<const openvdb::FloatTree, false>& from,
+    const openvdb::CoordBBox& box);
 
 }  // namespace bandvox

@@ -124,16 +124,30 @@ CoefficientBrick::CoefficientBrick(const openvdb::FloatGrid& grid, const openvdb
                                    BrickScratch& scratch) {
     const openvdb::tree::ValueAccessor<const openvdb::FloatTree, false> values(grid.tree());
     const openvdb::Coord origin(brick[0] * kSide, brick[1] * kSide, brick[2] * kSide);
+    const int reach = design.reach();
+    const auto haloOf = [&](const openvdb::CoordBBox& voxels) {
+        const openvdb::Coord first =
+            origin + voxels.min().offsetBy(firstNode(design.kernel) - reach);
+        return openvdb::CoordBBox(
+            first, first + voxels.dim().offsetBy(design.kernel.width() + 2 * reach - 1));
+    };
+
+    // In the middle of large tiles nothing is to be copied: they may fill very many bricks.
+    if (const auto constant = valueOfLargeTiles(values, haloOf(kWholeBrick))) {
+        mBegin = kWholeBrick.min().asVec3d();
+        mEnd = kWholeBrick.max().offsetBy(1).asVec3d();
+        mConstant = *constant;
+        return;
+    }
+
     const openvdb::CoordBBox voxels =
         mostlyRead ? mostlyReadVoxels(values, origin, *mostlyRead) : kWholeBrick;
     mBegin = voxels.min().asVec3d();
     mEnd = voxels.max().offsetBy(1).asVec3d();
 
     // Copy the lattice under them and a halo.
-    const int reach = design.reach();
     const openvdb::Coord nodes = voxels.dim().offsetBy(design.kernel.width());
-    const openvdb::Coord first = origin + voxels.min().offsetBy(firstNode(design.kernel) - reach);
-    const openvdb::CoordBBox halo(first, first + nodes.offsetBy(2 * reach - 1));
+    const openvdb::CoordBBox halo = haloOf(voxels);
     const std::size_t rowLength = halo.dim()[2], plane = rowLength * halo.dim()[1];
     scratch.lattice.resize(plane * halo.dim()[0]);
     if (copyBox(values, halo, scratch.lattice.data(), plane, rowLength)) {

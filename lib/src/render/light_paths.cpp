@@ -31,10 +31,10 @@ double largest(const Vec3d& v) {
 }  // namespace
 
 LightPaths::LightPaths(const PreparedScene& scene, const Lamps& lamps,
-                       const PictureOptions& options)
+                       const PictureOptions& options, const Progress& progress)
     : mScene(scene),
       mLamps(lamps),
-      mMedium(scene, lamps, options),
+      mMedium(scene, lamps, options, progress),
       mTransport(options.transport),
       mBackground(options.background) {}
 

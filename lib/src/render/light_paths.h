@@ -23,7 +23,8 @@ struct PathLight {
 /// Follows lines of sight to where light comes from, as TransportOptions has it.
 class LightPaths {
   public:
-    LightPaths(const PreparedScene& scene, const Lamps& lamps, const PictureOptions& options);
+    LightPaths(const PreparedScene& scene, const Lamps& lamps, const PictureOptions& options,
+               const Progress& progress);
 
     /// `spans`: as PreparedScene::nearest has it.
     PathLight look(const Ray& ray, std::span<const ScreenCells::Span> spans, SampleStream& numbers,

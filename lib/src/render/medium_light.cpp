@@ -49,11 +49,12 @@ double henyeyGreenstein(double cosine, double g) {
 }
 
 MediumTransport::MediumTransport(const PreparedScene& scene, const Lamps& lamps,
-                                 const PictureOptions& options)
+                                 const PictureOptions& options, const Progress& progress)
     : mScene(scene),
       mLamps(lamps),
       mTransport(options.transport),
       mMethod(options.volumes.method),
+      mProgress(progress),
       mAround(meanOf(scene.environment())) {
     bool areBandLimited = true;
     for (const auto& volume : scene.volumes()) {
@@ -143,6 +144,7 @@ MediumLight MediumTransport::alongBySteps(const Ray& ray, double end, const Insi
     MediumLight result;
     double seen = 0;
     forEachStep(ray, end, 1, [&](double t, double length) {
+        mProgress.throwIfInterrupted();
         const Vec3d place = ray.origin + t * ray.direction;
         Vec3d light(0.0);
         double extinction = 0;
@@ -175,6 +177,7 @@ MediumLight MediumTransport::alongByTracking(const Ray& ray, double end, const I
     for (int i = 0; i < static_cast<int>(mScene.volumes().size()); ++i) {
         const VolumeObject& volume = *mScene.volumes()[i];
         volume.walk(ray, nearest, [&](double t0, double t1, double most) {
+            mProgress.throwIfInterrupted();
             double t = t0;
             for (int tries = 0; tries < kMostTries; ++tries) {
                 t -= std::log(1 - numbers.next()) / most;

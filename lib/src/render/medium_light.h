@@ -4,6 +4,7 @@
 #include "render/prepared_scene.h"
 #include "render/sample_stream.h"
 
+#include <bandvox/core/progress.h>
 #include <bandvox/render/picture_options.h>
 
 namespace bandvox {
@@ -18,9 +19,12 @@ struct MediumLight {
 /// Light in the volumes of a scene: stopped, sent out, and scattered once.
 class MediumTransport {
   public:
-    MediumTransport(const PreparedScene& scene, const Lamps& lamps, const PictureOptions& options);
+    /// `progress` must live as long as this.
+    MediumTransport(const PreparedScene& scene, const Lamps& lamps, const PictureOptions& options,
+                    const Progress& progress = silentProgress());
 
-    /// Along a ray, 0 ≤ t ≤ `end`.
+    /// Along a ray, 0 ≤ t ≤ `end`. Throws Error(ErrorKind::Interrupted) if the caller wants to
+    /// stop: a ray may go through very many voxels.
     MediumLight along(const Ray& ray, double end, const InsideOf& inside, SampleStream& numbers,
                       SceneProbes& probes) const;
 
@@ -51,6 +55,7 @@ class MediumTransport {
     VolumeOptions::Method mMethod;
     std::vector<double> mSteps;  // of each volume, world units
     double mLongSteps = 1;  // how much longer they are where only the sum of the density counts
+    const Progress& mProgress;
     openvdb::Vec3d mAround{0, 0, 0};  // the mean of the light from around
 };
 

@@ -47,9 +47,9 @@ PreparedScene::PreparedScene(const Scene& scene, const PictureOptions& options, 
         if (options.allowEmpty && object.grid->evalActiveVoxelBoundingBox().empty()) continue;
         try {
             if (object.kind == SceneObject::Kind::Surface) {
-                mSurfaces.push_back(std::make_unique<SurfaceObject>(object, options));
+                mSurfaces.push_back(std::make_unique<SurfaceObject>(object, options, progress));
             } else {
-                mVolumes.push_back(std::make_unique<VolumeObject>(object, options));
+                mVolumes.push_back(std::make_unique<VolumeObject>(object, options, progress));
             }
         } catch (const Error& error) {
             failNamed(object, error);

@@ -37,10 +37,10 @@ constexpr int kPreviewParts = 64;
 // Volumes that hide less than this of what is behind are not seen.
 constexpr double kLeastCoverage = 1e-3;
 
-Camera makeCamera(const Scene& scene, const PictureOptions& options) {
+Camera makeCamera(const Scene& scene, const PictureOptions& options, const Progress& progress) {
     FramedPoints framed;
     if (needsFraming(options.camera)) {
-        framed = pointsToFrame(scene);
+        framed = pointsToFrame(scene, progress);
     } else {
         framed.active = {*options.camera.lookat};
     }
@@ -51,7 +51,7 @@ Camera makeCamera(const Scene& scene, const PictureOptions& options) {
 class Painter {
   public:
     Painter(const PreparedScene& scene, const LightPaths& paths, const Camera& camera,
-            const PictureOptions& options, Image& image)
+            const PictureOptions& options, Image& image, const Progress& progress)
         : mPaths(paths),
           mCamera(camera),
           mOptions(options),
@@ -63,7 +63,7 @@ class Painter {
         for (const auto& surface : scene.surfaces()) {
             mCells.push_back(std::make_unique<ScreenCells>(camera, options.width, options.height,
                                                            margin, surface->blocks(),
-                                                           surface->grid().transform()));
+                                                           surface->grid().transform(), progress));
         }
     }
 
@@ -72,8 +72,8 @@ class Painter {
         std::unique_ptr<SceneProbes> probes = mProbes.take();
         std::int64_t hits = 0;
         for (int row = tile.top; row < tile.bottom; row += every) {
-            progress.throwIfInterrupted();
             for (int column = tile.left; column < tile.right; column += every) {
+                progress.throwIfInterrupted();
                 hits += draw(column, row, *probes);
                 if (every > 1) spread(tile, column, row, every);
             }
@@ -233,9 +233,9 @@ RenderResult sceneToImage(const Scene& scene, const PictureOptions& options, Pro
     const bool hasObjects = !prepared.surfaces().empty() || !prepared.volumes().empty();
     // The environment may be seen by a camera that needs no object.
     if (!hasObjects && needsFraming(options.camera)) return emptyPicture(options);
-    const Camera camera = makeCamera(scene, options);
+    const Camera camera = makeCamera(scene, options, progress);
     const Lamps lamps(scene.lights, camera);
-    const LightPaths paths(prepared, lamps, options);
+    const LightPaths paths(prepared, lamps, options, progress);
 
     // Draw.
     RenderResult result;
@@ -244,7 +244,7 @@ RenderResult sceneToImage(const Scene& scene, const PictureOptions& options, Pro
         describe(result.image, *scene.objects.front().grid, prepared.surfaces().front()->iso());
     }
     describe(result.image, options, camera);
-    Painter painter(prepared, paths, camera, options, result.image);
+    Painter painter(prepared, paths, camera, options, result.image, progress);
     {
         Image& image = result.image;
         const ProgressStage stage(progress, "drawing", tileCount(image.width, image.height));

@@ -36,7 +36,8 @@ double blockRadius(const openvdb::Mat4d& toWorld) {
 }  // namespace
 
 ScreenCells::ScreenCells(const Camera& camera, int width, int height, double margin,
-                         const SurfaceBlocks& blocks, const openvdb::math::Transform& transform)
+                         const SurfaceBlocks& blocks, const openvdb::math::Transform& transform,
+                         const Progress& progress)
     : mCamera(camera),
       mWidth(width),
       mHeight(height),
@@ -46,11 +47,12 @@ ScreenCells::ScreenCells(const Camera& camera, int width, int height, double mar
       mToWorld(transform.baseMap()->getAffineMap()->getMat4()),
       mBlockRadius(blockRadius(mToWorld)),
       mCells(static_cast<std::size_t>(mAcross) * mDown) {
-    const std::vector<SurfaceBlocks::Group> groups = blocks.groups();
+    const std::vector<SurfaceBlocks::Group> groups = blocks.groups(progress);
     WorkerPool<Cells> workers([this] { return std::make_unique<Cells>(mCells.size()); });
     constexpr std::size_t kGroupsPerTask = 64;
     const std::size_t tasks = (groups.size() + kGroupsPerTask - 1) / kGroupsPerTask;
     parallelFor(static_cast<std::int64_t>(tasks), [&](std::int64_t task) {
+        progress.throwIfInterrupted();
         auto cells = workers.take();
         const std::size_t begin = static_cast<std::size_t>(task) * kGroupsPerTask;
         const std::size_t end = std::min(begin + kGroupsPerTask, groups.size());

@@ -2,6 +2,7 @@
 
 #include "render/surface_blocks.h"
 
+#include <bandvox/core/progress.h>
 #include <bandvox/render/camera.h>
 
 #include <openvdb/openvdb.h>
@@ -16,9 +17,11 @@ namespace bandvox {
 /// pass by an object: they are told so without a look at its tree.
 class ScreenCells {
   public:
-    /// `margin`: by how many pixels a line of sight may pass outside of its pixel.
+    /// `margin`: by how many pixels a line of sight may pass outside of its pixel. Throws
+    /// Error(ErrorKind::Interrupted) if the caller wants to stop.
     ScreenCells(const Camera& camera, int width, int height, double margin,
-                const SurfaceBlocks& blocks, const openvdb::math::Transform& transform);
+                const SurfaceBlocks& blocks, const openvdb::math::Transform& transform,
+                const Progress& progress = silentProgress());
 
     /// Part of a line of sight, world units from where it begins; empty if near > far.
     struct Span {

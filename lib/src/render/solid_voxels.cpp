@@ -128,14 +128,16 @@ int emptySide(const SolidVoxels::Probe& probe, const Coord& voxel) {
 
 }  // namespace
 
-SolidVoxels::SolidVoxels(const openvdb::FloatGrid& grid, double iso) : mMaximum(grid.background()) {
+SolidVoxels::SolidVoxels(const openvdb::FloatGrid& grid, double iso, const Progress& progress)
+    : mMaximum(grid.background()) {
     // Examine the leaves, then take over those with solid voxels, in their order.
     std::vector<const Leaf*> leaves;
     grid.tree().getNodes(leaves);
     const auto limit = static_cast<float>(iso);
-    const std::vector<SolidLeaf> found =
-        examineLeaves(leaves, [limit](const Leaf& leaf) { return findSolid(leaf, limit); });
+    const std::vector<SolidLeaf> found = examineLeaves(
+        leaves, progress, [limit](const Leaf& leaf) { return findSolid(leaf, limit); });
     for (std::size_t i = 0; i < leaves.size(); ++i) {
+        progress.throwIfInterrupted();
         mMaximum = std::max<double>(mMaximum, found[i].maximum);
         if (!found[i].solid.isOff()) {
             mSolid.touchLeaf(leaves[i]->origin())->setValueMask(found[i].solid);
@@ -146,6 +148,7 @@ SolidVoxels::SolidVoxels(const openvdb::FloatGrid& grid, double iso) : mMaximum(
     auto tile = grid.tree().cbeginValueAll();
     tile.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
+        progress.throwIfInterrupted();
         if (!(tile.getValue() >= limit)) continue;
         mMaximum = std::max<double>(mMaximum, tile.getValue());
         mSolid.sparseFill(tile.getBoundingBox(), true, true);

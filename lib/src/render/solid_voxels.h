@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bandvox/core/progress.h>
 #include <bandvox/render/camera.h>
 
 #include <openvdb/openvdb.h>
@@ -20,8 +21,10 @@ struct VoxelHit {
 /// The voxels of a grid that are solid, cubes around their centres. All in index coordinates.
 class SolidVoxels {
   public:
-    /// Solid is what has a value ≥ iso, which must be above the grid's background.
-    SolidVoxels(const openvdb::FloatGrid& grid, double iso);
+    /// Solid is what has a value ≥ iso, which must be above the grid's background. Throws
+    /// Error(ErrorKind::Interrupted) if the caller wants to stop.
+    SolidVoxels(const openvdb::FloatGrid& grid, double iso,
+                const Progress& progress = silentProgress());
 
     bool empty() const { return mSolid.empty(); }
 

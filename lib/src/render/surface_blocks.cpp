@@ -2,7 +2,9 @@
 
 #include "core/instruction_sets.h"
 #include "core/lanes.h"
+#include "render/tile_shell.h"
 
+#include <bandvox/core/memory.h>
 #include <bandvox/core/parallel.h>
 
 #include <algorithm>
@@ -149,9 +151,10 @@ struct SomeBlocks {
 // by all threads, put together.
 template <typename Node, typename Examine>
 SomeBlocks examineNodes(const std::vector<const Node*>& nodes, std::size_t nodesPerTask,
-                        const Examine& examine) {
+                        const Progress& progress, const Examine& examine) {
     std::vector<SomeBlocks> parts((nodes.size() + nodesPerTask - 1) / nodesPerTask);
     parallelFor(static_cast<std::int64_t>(parts.size()), [&](std::int64_t task) {
+        progress.throwIfInterrupted();
         SomeBlocks& part = parts[static_cast<std::size_t>(task)];
         BlockMarker marker(part.blocks);
         const std::size_t begin = static_cast<std::size_t>(task) * nodesPerTask;
@@ -160,6 +163,7 @@ SomeBlocks examineNodes(const std::vector<const Node*>& nodes, std::size_t nodes
     });
     SomeBlocks all;
     for (const SomeBlocks& part : parts) {
+        progress.throwIfInterrupted();
         all.blocks.topologyUnion(part.blocks);
         all.maximum = std::max(all.maximum, part.maximum);
         all.finite = all.finite && part.finite;
@@ -169,7 +173,8 @@ SomeBlocks examineNodes(const std::vector<const Node*>& nodes, std::size_t nodes
 
 }  // namespace
 
-SurfaceBlocks::SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold)
+SurfaceBlocks::SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold,
+                             const Progress& progress)
     : mMaximum(grid.background()) {
     const auto limit = static_cast<float>(threshold);
     const auto add = [this](const SomeBlocks& some) {
@@ -182,7 +187,7 @@ SurfaceBlocks::SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold)
     constexpr std::size_t kLeavesPerTask = 4096;
     std::vector<const Leaf*> leaves;
     grid.tree().getNodes(leaves);
-    add(examineNodes(leaves, kLeavesPerTask,
+    add(examineNodes(leaves, kLeavesPerTask, progress,
                      [limit](const Leaf& leaf, BlockMarker& marker, SomeBlocks& found) {
                          const LeafSummary summary = summarize(leaf.buffer().data(), limit);
                          found.maximum = std::max(found.maximum, summary.maximum);
@@ -194,7 +199,7 @@ SurfaceBlocks::SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold)
     constexpr std::size_t kNodesPerTask = 16;
     std::vector<const LeafParent*> parents;
     grid.tree().getNodes(parents);
-    add(examineNodes(parents, kNodesPerTask,
+    add(examineNodes(parents, kNodesPerTask, progress,
                      [limit](const LeafParent& parent, BlockMarker& marker, SomeBlocks& found) {
                          for (auto tile = parent.cbeginValueAll(); tile; ++tile) {
                              found.note(*tile);
@@ -204,28 +209,53 @@ SurfaceBlocks::SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold)
 
     // Larger tiles.
     SomeBlocks large;
+    std::vector<openvdb::CoordBBox> tiles;
     auto tile = grid.tree().cbeginValueAll();
     tile.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 2);
     for (; tile; ++tile) {
+        progress.throwIfInterrupted();
         large.note(*tile);
-        if (*tile >= limit) mark(tile.getBoundingBox());
+        if (*tile >= limit) tiles.push_back(tile.getBoundingBox());
     }
     add(large);
+    markLargeTiles(tiles, progress);
 
     mBox = boxOfBlocks(mBlocks);
 }
 
-void SurfaceBlocks::mark(const openvdb::CoordBBox& voxels) {
-    openvdb::CoordBBox blocks(voxels.min().offsetBy(-kSurfaceMargin),
-                              voxels.max().offsetBy(kSurfaceMargin));
-    blocks.min() >>= kLog2;
-    blocks.max() >>= kLog2;
-    mBlocks.sparseFill(blocks, true, true);
+void SurfaceBlocks::markLargeTiles(const std::vector<openvdb::CoordBBox>& tiles,
+                                   const Progress& progress) {
+    // Their own blocks fill whole nodes of the tree.
+    static_assert(LeafParent::DIM % (kSide * BlockLeaf::DIM) == 0 && kSurfaceMargin <= kSide);
+    const auto blocksOf = [](const openvdb::CoordBBox& voxels) {
+        return openvdb::CoordBBox(voxels.min() >> kLog2, voxels.max() >> kLog2);
+    };
+    for (const openvdb::CoordBBox& tile : tiles) {
+        progress.throwIfInterrupted();
+        mBlocks.sparseFill(blocksOf(tile), true, true);
+    }
+
+    // A layer of blocks around them, where no tile is, takes leaves. A tree that runs out of memory
+    // ends the process while it is destroyed, so do not let it come to that.
+    const auto isOn = [](bool /*value*/) { return true; };
+    TileShells<openvdb::MaskTree> shells(mBlocks, progress);
+    for (const openvdb::CoordBBox& tile : tiles) shells.countLeaves(blocksOf(tile), isOn);
+    if (tiles.empty()) return;
+    constexpr double kListed = sizeof(Group) + sizeof(void*);  // of a leaf, in lists of them
+    requireMemory(shells.bytes(kListed), "the surface of the grid's tiles");
+    openvdb::tree::ValueAccessor<openvdb::MaskTree> blocks(mBlocks);
+    for (const openvdb::CoordBBox& tile : tiles) {
+        shells.forEachPart(blocksOf(tile), isOn, [&blocks](const openvdb::CoordBBox& part) {
+            blocks.touchLeaf(part.min())->fill(part, true);
+        });
+    }
 }
 
-std::vector<SurfaceBlocks::Group> SurfaceBlocks::groups() const {
+std::vector<SurfaceBlocks::Group> SurfaceBlocks::groups(const Progress& progress) const {
     std::vector<Group> groups;
+    groups.reserve(mBlocks.leafCount() + mBlocks.activeTileCount());
     for (auto leaf = mBlocks.cbeginLeaf(); leaf; ++leaf) {
+        progress.throwIfInterrupted();
         groups.push_back({leaf->origin() << kLog2, 1 << BlockLeaf::LOG2DIM, leaf->buffer().data()});
     }
     auto tile = mBlocks.cbeginValueOn();

@@ -2,6 +2,7 @@
 
 #include "render/block_walk.h"
 
+#include <bandvox/core/progress.h>
 #include <bandvox/render/camera.h>
 
 #include <openvdb/openvdb.h>
@@ -17,8 +18,11 @@ namespace bandvox {
 class SurfaceBlocks {
   public:
     /// Marks the blocks within a voxel of a value ≥ `threshold`, which must be above the grid's
-    /// background.
-    SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold);
+    /// background. Memory and time are set by the leaves and by the surface of what tiles fill.
+    /// Throws Error(ErrorKind::Memory) before allocating if what is around large tiles would not
+    /// fit, Error(ErrorKind::Interrupted) if the caller wants to stop.
+    SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold,
+                  const Progress& progress = silentProgress());
 
     bool empty() const { return mBox.empty(); }
 
@@ -45,8 +49,9 @@ class SurfaceBlocks {
         int side;                   ///< blocks
         const std::uint64_t* rows;  ///< which of 8³ are there, as a leaf's mask; null if all are
     };
-    /// All blocks, a group for each node of the tree; valid as long as this object.
-    std::vector<Group> groups() const;
+    /// All blocks, a group for each node of the tree; valid as long as this object. Throws
+    /// Error(ErrorKind::Interrupted) if the caller wants to stop.
+    std::vector<Group> groups(const Progress& progress = silentProgress()) const;
 
     /// Voxels along a block.
     static constexpr int kSide = 4;
@@ -55,7 +60,7 @@ class SurfaceBlocks {
     static constexpr int kLog2 = 2;
     static_assert(kSide == 1 << kLog2);
 
-    void mark(const openvdb::CoordBBox& voxels);
+    void markLargeTiles(const std::vector<openvdb::CoordBBox>& tiles, const Progress& progress);
 
     openvdb::MaskTree mBlocks;  // one voxel for each block
     openvdb::BBoxd mBox;        // of the blocks

@@ -46,10 +46,10 @@ openvdb::FloatGrid::Ptr opposite(const openvdb::FloatGrid& grid) {
 }
 
 // The largest difference between neighbours along an axis.
-double largestStep(const openvdb::FloatGrid& grid) {
+double largestStep(const openvdb::FloatGrid& grid, const Progress& progress) {
     std::vector<const FieldLeaf*> leaves;
     grid.tree().getNodes(leaves);
-    const std::vector<double> found = examineLeaves(leaves, [&grid](const FieldLeaf& leaf) {
+    const auto largestIn = [&grid](const FieldLeaf& leaf) {
         double largest = 0;
         const auto accessor = grid.getConstAccessor();
         const float* values = leaf.buffer().data();
@@ -76,7 +76,8 @@ double largestStep(const openvdb::FloatGrid& grid) {
             }
         }
         return largest;
-    });
+    };
+    const std::vector<double> found = examineLeaves(leaves, progress, largestIn);
     double largest = 0;
     for (const double step : found) largest = std::max(largest, step);
     // Beside a tile may lie another one.
@@ -84,6 +85,7 @@ double largestStep(const openvdb::FloatGrid& grid) {
     auto tile = grid.cbeginValueAll();
     tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
+        progress.throwIfInterrupted();
         const openvdb::CoordBBox box = tile.getBoundingBox();
         for (int axis = 0; axis < 3; ++axis) {
             openvdb::Coord before = box.min(), after = box.min();
@@ -186,7 +188,7 @@ std::unique_ptr<Reconstruction> readLattice(const openvdb::FloatGrid::ConstPtr& 
 }
 
 SurfaceField readSurface(const DrawableGrid& drawable, double maximum,
-                         const PictureOptions& options) {
+                         const PictureOptions& options, const Progress& progress) {
     const auto field = [&](double slope, const ClearDistance& outside,
                            const ClearDistance& inside) -> SurfaceField {
         const DensityBand asked = askedBand(drawable.iso, outside, inside);
@@ -199,7 +201,7 @@ SurfaceField readSurface(const DrawableGrid& drawable, double maximum,
         const auto [outside, inside] = clearDistances(drawable, maximum, slope);
         return field(slope, outside, inside);
     }
-    const double step = largestStep(*drawable.grid);
+    const double step = largestStep(*drawable.grid, progress);
     const double steepest = (drawable.isLevelSet ? kSplineMargin : kSplineSteepest) * step;
     return field(step, ClearDistance::ofSlope(iso, drawable.grid->background(), steepest, 0),
                  ClearDistance::ofSlope(std::max(maximum, iso + step), iso, steepest, 0));

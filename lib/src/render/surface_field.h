@@ -2,6 +2,7 @@
 
 #include "render/ray_march.h"
 
+#include <bandvox/core/progress.h>
 #include <bandvox/grid/density_grid.h>
 #include <bandvox/reconstruct/reconstruction.h>
 #include <bandvox/render/picture_options.h>
@@ -37,9 +38,11 @@ struct SurfaceField {
 
 /// What was band-limited by this library is read by the filter that it was made with, other grids
 /// by the cubic spline through their values. `maximum`: of the lattice, all of which is finite.
-/// Throws Error(ErrorKind::Input) if the filter leaves too much to be read.
+/// Throws Error(ErrorKind::Input) if the filter leaves too much to be read,
+/// Error(ErrorKind::Interrupted) if the caller wants to stop.
 SurfaceField readSurface(const DrawableGrid& drawable, double maximum,
-                         const PictureOptions& options);
+                         const PictureOptions& options,
+                         const Progress& progress = silentProgress());
 
 /// Bytes for a reconstruction's bricks: what most pictures need, if the machine has it.
 std::size_t cacheBytes(const PictureOptions& options);

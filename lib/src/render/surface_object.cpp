@@ -16,7 +16,8 @@ constexpr double kFlatGradient = 1e-4;
 
 }  // namespace
 
-SurfaceObject::SurfaceObject(const SceneObject& object, const PictureOptions& options)
+SurfaceObject::SurfaceObject(const SceneObject& object, const PictureOptions& options,
+                             const Progress& progress)
     : mName(object.name),
       mMaterial(object.material),
       mFacets(object.material.roughness),
@@ -25,11 +26,11 @@ SurfaceObject::SurfaceObject(const SceneObject& object, const PictureOptions& op
       mToIndex(mDrawable.grid->transform().baseMap()->getAffineMap()->getMat4().inverse()),
       mVoxel(shortestVoxelSide(*mDrawable.grid)) {
     worldBox(grid());  // refuses what is not finite
-    mBlocks = std::make_unique<SurfaceBlocks>(grid(), surfaceThreshold(mDrawable));
+    mBlocks = std::make_unique<SurfaceBlocks>(grid(), surfaceThreshold(mDrawable), progress);
     if (!mBlocks->finite()) failNotFinite(grid());
     if (object.colors) mColors.emplace(object.colors);
     if (empty()) return;
-    mField = readSurface(mDrawable, mBlocks->maximum(), options);
+    mField = readSurface(mDrawable, mBlocks->maximum(), options, progress);
     mMarch.emplace(*mBlocks, mDrawable.iso, mField->clear, mDrawable.grid.get(), mField->inside);
     mFlat = kFlatGradient * mField->slope;
 }

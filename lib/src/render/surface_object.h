@@ -7,6 +7,7 @@
 #include "render/surface_blocks.h"
 #include "render/surface_field.h"
 
+#include <bandvox/core/progress.h>
 #include <bandvox/render/picture_options.h>
 #include <bandvox/render/scene.h>
 
@@ -26,7 +27,8 @@ struct SurfaceHit {
 class SurfaceObject {
   public:
     /// Throws as sceneToImage.
-    SurfaceObject(const SceneObject& object, const PictureOptions& options);
+    SurfaceObject(const SceneObject& object, const PictureOptions& options,
+                  const Progress& progress = silentProgress());
 
     const Material& material() const { return mMaterial; }
     const Facets& facets() const { return mFacets; }

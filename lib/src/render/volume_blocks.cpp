@@ -1,6 +1,9 @@
 #include "render/volume_blocks.h"
 
 #include "render/examine_leaves.h"
+#include "render/tile_shell.h"
+
+#include <bandvox/core/memory.h>
 
 #include <algorithm>
 #include <array>
@@ -12,7 +15,8 @@ namespace bandvox {
 
 namespace {
 
-using Leaf = openvdb::FloatTree::LeafNodeType;
+using Tree = openvdb::FloatTree;
+using Leaf = Tree::LeafNodeType;
 
 // Values of the lattice act on places this many voxels beyond them, farther off only as ripples,
 // less than 0.004 of a step.
@@ -28,6 +32,12 @@ constexpr double kAverageRise = 1.0001;
 constexpr double kRiseMargin = 1.01;
 
 constexpr float kLargest = 1e30F;
+
+// Around tiles of so many blocks along a side or more, which are of the root, whole leaves are
+// raised: they take no memory of their own, and beside so much a thicker shell costs lines of sight
+// next to nothing.
+constexpr int kRootTile =
+    static_cast<int>(Tree::RootNodeType::ChildNodeType::DIM) / VolumeBlocks::kSide;
 
 // What a leaf holds that matters to itself, 0, and to its neighbours before, -1, and behind, 1,
 // along each axis: [x + 1][y + 1][z + 1].
@@ -94,19 +104,17 @@ openvdb::Coord neighbourOf(const openvdb::Coord& block, int i) {
 }  // namespace
 
 VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid,
-                           const std::optional<ExponentialFilter>& filter, double least)
+                           const std::optional<ExponentialFilter>& filter, double least,
+                           const Progress& progress)
     : mBlocks(0) {
     const auto rise = static_cast<float>(riseAboveNodes(filter));
 
     // Mark the tiles first, then around each of them: its borders matter to tiles beside it too.
-    struct Tile {
-        openvdb::CoordBBox blocks;
-        float most;
-    };
     std::vector<Tile> tiles;
     auto tile = grid.tree().cbeginValueAll();
     tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
+        progress.throwIfInterrupted();
         const float value = tile.getValue();
         mFinite = mFinite && std::abs(value) <= kLargest;
         if (!(value > 0)) continue;
@@ -116,31 +124,18 @@ VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid,
         mBlocks.sparseFill(blocks, rise * value, true);
         tiles.push_back({blocks, rise * value});
     }
-    for (const auto& [blocks, most] : tiles) {
-        // The six sides, edges and corners with the first of them.
-        openvdb::CoordBBox around = blocks;
-        around.expand(1);
-        for (int axis = 0; axis < 3; ++axis) {
-            openvdb::CoordBBox before = around, behind = around;
-            before.max()[axis] = around.min()[axis];
-            behind.min()[axis] = around.max()[axis];
-            for (const openvdb::CoordBBox& side : {before, behind}) {
-                for (auto block = side.begin(); block; ++block) raise(*block, most);
-            }
-            around.min()[axis] = blocks.min()[axis];
-            around.max()[axis] = blocks.max()[axis];
-        }
-    }
+    raiseAround(tiles, progress);
 
     // Examine the leaves, then mark in their order.
     std::vector<const Leaf*> leaves;
     grid.tree().getNodes(leaves);
-    const std::vector<LeafMaxima> found = examineLeaves(leaves, findMaxima);
+    const std::vector<LeafMaxima> found = examineLeaves(leaves, progress, findMaxima);
     float highest = 0;
     for (const Tile& marked : tiles) highest = std::max(highest, marked.most);
     for (const LeafMaxima& leaf : found) highest = std::max(highest, leaf.most[13]);
     const float nothing = std::min(kNoDensity * highest, static_cast<float>(least));
     for (std::size_t i = 0; i < leaves.size(); ++i) {
+        progress.throwIfInterrupted();
         mFinite = mFinite && found[i].finite;
         const openvdb::Coord block = leaves[i]->origin() >> kLog2;
         for (int n = 0; n < 27; ++n) {
@@ -148,6 +143,46 @@ VolumeBlocks::VolumeBlocks(const openvdb::FloatGrid& grid,
         }
     }
     mBox = boxOfBlocks(mBlocks);
+}
+
+void VolumeBlocks::raiseAround(const std::vector<Tile>& tiles, const Progress& progress) {
+    const auto isRootTile = [](const Tile& tile) { return tile.blocks.dim()[0] >= kRootTile; };
+    const auto covers = [](const Tile& tile) {
+        return [most = tile.most](float value) { return value >= most; };
+    };
+    TileShells<Tree> shells(mBlocks, progress);
+    for (const Tile& tile : tiles) {
+        // Those no larger than leaves have their like in memory already.
+        if (tile.blocks.dim()[0] == 1) continue;
+        if (isRootTile(tile)) {
+            shells.countNodes(tile.blocks, covers(tile));
+        } else {
+            shells.countLeaves(tile.blocks, covers(tile));
+        }
+    }
+    const double bytes = shells.bytes(Leaf::SIZE * sizeof(float));
+    if (bytes > 0) requireMemory(bytes, "the surface of the grid's tiles");
+
+    for (const Tile& tile : tiles) {
+        if (tile.blocks.dim()[0] == 1) {
+            progress.throwIfInterrupted();
+            for (int n = 0; n < 27; ++n) raise(neighbourOf(tile.blocks.min(), n), tile.most);
+            continue;
+        }
+        shells.forEachPart(tile.blocks, covers(tile), [&](const openvdb::CoordBBox& part) {
+            if (!isRootTile(tile)) {
+                for (auto block = part.begin(); block; ++block) raise(*block, tile.most);
+                return;
+            }
+            const openvdb::CoordBBox whole = openvdb::CoordBBox::createCube(
+                part.min() & ~(int(Leaf::DIM) - 1), static_cast<int>(Leaf::DIM));
+            if (mBlocks.probeLeaf(part.min())) {
+                for (auto block = whole.begin(); block; ++block) raise(*block, tile.most);
+            } else {
+                mBlocks.addTile(1, whole.min(), tile.most, true);
+            }
+        });
+    }
 }
 
 void VolumeBlocks::raise(const openvdb::Coord& block, float most) {

@@ -45,7 +45,8 @@ std::unique_ptr<Reconstruction> readVolume(const openvdb::FloatGrid::ConstPtr& g
 
 }  // namespace
 
-VolumeObject::VolumeObject(const SceneObject& object, const PictureOptions& options)
+VolumeObject::VolumeObject(const SceneObject& object, const PictureOptions& options,
+                           const Progress& progress)
     : mName(object.name),
       mGrid(object.grid),
       mMedium(object.medium),
@@ -68,13 +69,15 @@ VolumeObject::VolumeObject(const SceneObject& object, const PictureOptions& opti
     mIsBandLimited = metadata.has_value();
     std::optional<ExponentialFilter> filter;
     if (metadata) filter = ExponentialFilter{metadata->order, metadata->cutoff};
-    mBlocks = std::make_unique<VolumeBlocks>(*mGrid, filter, kNoDepth / (mExtinction * longest));
+    mBlocks = std::make_unique<VolumeBlocks>(*mGrid, filter, kNoDepth / (mExtinction * longest),
+                                             progress);
     if (!mBlocks->finite()) failNotFinite(*mGrid);
     mDensity = readVolume(mGrid, metadata, options);
     if (object.colors) mColors.emplace(object.colors);
     if (!object.temperatures) return;
     requireDrawable(*object.temperatures);
     for (auto kelvin = object.temperatures->cbeginValueOn(); kelvin; ++kelvin) {
+        progress.throwIfInterrupted();
         if (!(std::abs(*kelvin) <= kHottest)) failNotFinite(*object.temperatures);
     }
     mToTemperature = indexOfWorld(*object.temperatures);

@@ -3,6 +3,7 @@
 #include "render/object_colors.h"
 #include "render/volume_blocks.h"
 
+#include <bandvox/core/progress.h>
 #include <bandvox/reconstruct/reconstruction.h>
 #include <bandvox/render/picture_options.h>
 #include <bandvox/render/scene.h>
@@ -24,7 +25,8 @@ struct VolumeProbe {
 class VolumeObject {
   public:
     /// Throws as sceneToImage.
-    VolumeObject(const SceneObject& object, const PictureOptions& options);
+    VolumeObject(const SceneObject& object, const PictureOptions& options,
+                 const Progress& progress = silentProgress());
 
     bool empty() const { return mBlocks->empty(); }
     /// That no density is seen, in words.

@@ -157,7 +157,7 @@ class VoxelPicture {
 
 RenderResult voxelsToImage(const VoxelScene& scene, Progress& progress) {
     const RenderOptions& options = scene.options;
-    const SolidVoxels solid(scene.grid, scene.iso);
+    const SolidVoxels solid(scene.grid, scene.iso, progress);
     if (solid.empty()) {
         if (options.allowEmpty) return emptyPicture(options);
         failEmpty(solid.maximum(), scene.iso);
