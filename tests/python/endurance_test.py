@@ -58,11 +58,16 @@ def test_a_thousand_calls_leave_nothing_behind(cube, tmp_path):
     # Caches and pools of memory are full by then.
     for _ in range(20):
         once()
-    before = resident_bytes()
-    for _ in range(100):
-        once()
-    # More than twenty calls each; 40 kB kept by each round would be 4 MB.
-    assert resident_bytes() - before < 4 << 20
+    # A thread that works for the first time takes pools of its own, in one of these spans; what
+    # each round keeps is in all of them.
+    grown = []
+    for _ in range(3):
+        before = resident_bytes()
+        for _ in range(40):
+            once()
+        grown.append(resident_bytes() - before)
+    # More than twenty calls each; 40 kB kept by each round would be 1.6 MB.
+    assert min(grown) < 1600 << 10, grown
 
 
 def test_eight_pictures_are_drawn_at_once(torus):
