@@ -96,33 +96,44 @@ std::string refusalOf(const PictureOptions& picture) {
     }
 }
 
-// Settings of which each is one that a picture may have, and not all together: those that a scene
-// file gives are named. They take part if without them something else is wrong, or nothing.
+// What is wrong with settings of a picture, of which a scene file gives some: then it names these,
+// and options only beside them. A scene file that is wrong by itself is no wrong use of the
+// command.
+Error settingsError(const SceneRequest& scene, const std::vector<std::string>& settings,
+                    const std::string& message) {
+    std::vector<std::string> named, asked;
+    for (const std::string& setting : settings) {
+        const auto place = scene.places.find(setting);
+        if (place != scene.places.end()) {
+            named.push_back(place->second);
+        } else {
+            asked.push_back("--" + setting);
+        }
+    }
+    if (named.empty()) return {ErrorKind::Usage, message};
+    const ErrorKind kind = asked.empty() ? ErrorKind::Input : ErrorKind::Usage;
+    named.insert(named.end(), asked.begin(), asked.end());
+    return {kind, "'" + scene.file + "': " + joined(named, ", ") + ": " + message};
+}
+
+// Refuses settings of which each is one that a picture may have, but not all together. A setting
+// takes part in that if without it the picture would not be refused so.
 void requireValidTogether(const SceneRequest& scene, const PictureOptions& picture) {
     const std::string refusal = refusalOf(picture);
     if (refusal.empty()) return;
-    std::vector<std::string> places;
-    bool isAsked = false;
+    std::vector<std::string> settings;
     for (const auto& [name, value] : scene.picture.all()) {
         OptionValues others;
         for (const auto& [other, text] : scene.picture.all()) {
             if (other != name) others.set(other, text, scene.picture.origin(other));
         }
         try {
-            if (refusalOf(readPictureOptions(others)) == refusal) continue;
+            if (refusalOf(readPictureOptions(others)) != refusal) settings.push_back(name);
         } catch (const Error&) {
             continue;  // what is left cannot even be read
         }
-        const auto place = scene.places.find(name);
-        if (place != scene.places.end()) {
-            places.push_back(place->second);
-        } else {
-            isAsked = true;
-        }
     }
-    if (places.empty()) throw Error(ErrorKind::Usage, refusal);
-    throw Error(isAsked ? ErrorKind::Usage : ErrorKind::Input,
-                "'" + scene.file + "': " + joined(places, ", ") + ": " + refusal);
+    throw settingsError(scene, settings, refusal);
 }
 
 RenderRequest parseRender(const CommandLine& line) {
@@ -136,13 +147,10 @@ RenderRequest parseRender(const CommandLine& line) {
     requireUsedCamera(request.scene.picture, request.picture.camera);
     request.channels = readChannels(request.scene.picture);
     if (request.scene.picture.has("channels") && extensionOf(request.output) != ".exr") {
-        const auto place = request.scene.places.find("channels");
-        throw Error(ErrorKind::Usage,
-                    (place == request.scene.places.end()
-                         ? ""
-                         : "'" + request.scene.file + "': " + place->second + ": ") +
-                        "channels are chosen of an .exr, and '" + request.output +
-                        "' is none: a .png holds colour alone");
+        const Error error = settingsError(request.scene, {"channels"},
+                                          "channels are chosen of an .exr, and '" + request.output +
+                                              "' is none: a .png holds colour alone");
+        throw Error(ErrorKind::Usage, error.what());
     }
     request.previews = request.scene.picture.has("preview");
     request.shading = static_cast<Shading>(line.choice("shading", 0));
@@ -167,7 +175,9 @@ RenderResult draw(const RenderRequest& request, const Scene& scene, const Pictur
     try {
         return densityToImage(object.grid, options, progress);
     } catch (const Error& error) {
-        if (error.kind() == ErrorKind::Interrupted || error.kind() == ErrorKind::Memory) throw;
+        const bool isOfObject =
+            error.kind() == ErrorKind::Input || error.kind() == ErrorKind::Result;
+        if (!isOfObject) throw;
         throw Error(error.kind(), object.name + ": " + error.what());
     }
 }
@@ -182,10 +192,12 @@ auto ofScene(const SceneRequest& scene, const Body& body) {
         if (error.kind() != ErrorKind::Usage || scene.file.empty()) throw;
         const std::string message = error.what(), file = "'" + scene.file + "': ";
         if (message.starts_with(file)) throw Error(ErrorKind::Input, message);
-        // Of a camera the objects say where it looks to if nothing else does.
-        const auto eye = scene.places.find("eye");
-        if (eye == scene.places.end()) throw;
-        throw Error(ErrorKind::Input, file + eye->second + ": " + message);
+        // Only the objects say where a camera looks to if nothing else does.
+        std::vector<std::string> settings;
+        for (const char* setting : {"eye", "lookat", "up", "from"}) {
+            if (scene.picture.has(setting)) settings.emplace_back(setting);
+        }
+        throw settingsError(scene, settings, message);
     }
 }
 

@@ -77,11 +77,12 @@ ObjectRequest readObject(const OptionValues& values, const std::string& file) {
     return request;
 }
 
-// The values between slashes. In names of grids a slash or a backslash after a backslash is a part
-// of the name, and of the name for a single input any slash.
+// The values between slashes, one for each of `count` inputs. In names of grids a slash or a
+// backslash after a backslash is a part of the name; for a single input all of the text is.
 std::vector<std::string> splitValues(const std::string& name, const std::string& text,
                                      std::size_t count) {
     std::vector<std::string> parts;
+    if (isGridName(name) && count == 1) return {text};
     if (!isGridName(name)) {
         for (const std::string_view part : split(text, '/')) parts.emplace_back(part);
         return parts;
@@ -90,7 +91,7 @@ std::vector<std::string> splitValues(const std::string& name, const std::string&
     for (std::size_t i = 0; i < text.size(); ++i) {
         const bool isEscape =
             text[i] == '\\' && i + 1 < text.size() && (text[i + 1] == '/' || text[i + 1] == '\\');
-        if (text[i] == '/' && count > 1) {
+        if (text[i] == '/') {
             parts.emplace_back();
         } else {
             parts.back() += text[isEscape ? ++i : i];

@@ -83,7 +83,8 @@ constexpr const char* kCoded = "sRGB";
 class ColorConfiguration {
   public:
     ColorConfiguration() {
-        // All fall back to what is built in; but for a file of raw data they keep why.
+        // What fails falls back to what is built in, and keeps why; a file of raw data alone does
+        // not.
         std::string why = mConfig.geterror();
         if (why.empty() && mConfig.configname() == "built-in") why = "it knows raw data alone";
         if (why.empty()) {

@@ -50,15 +50,42 @@ TEST(ParallelAsMade, MakesInOrderAndCallsEachOnceWithWhatWasMade) {
         0, [](std::int64_t) { FAIL(); }, [](std::int64_t) { FAIL(); });
 }
 
-TEST(ParallelAsMade, PassesExceptionsOn) {
-    const auto nothing = [](std::int64_t) {};
+// Whichever thread is quicker.
+TEST(ParallelAsMade, PassesTheExceptionOfTheLowestOn) {
+    const auto failAt = [](std::int64_t place) {
+        return [place](std::int64_t i) {
+            if (i >= place) throw Error(ErrorKind::Input, std::to_string(i));
+        };
+    };
+    const auto found = [&](std::int64_t make, std::int64_t body) -> std::string {
+        try {
+            parallelAsMade(100, failAt(make), failAt(body));
+            return "none";
+        } catch (const Error& error) {
+            return error.what();
+        }
+    };
+    for (const int threads : {1, 2, 4}) {
+        const ThreadLimit limit(threads);
+        for (int round = 0; round < 50; ++round) {
+            EXPECT_EQ(found(100, 100), "none");
+            EXPECT_EQ(found(100, 70), "70");
+            EXPECT_EQ(found(70, 100), "70");
+            EXPECT_EQ(found(0, 0), "0");
+            EXPECT_EQ(found(71, 70), "70");
+            EXPECT_EQ(found(90, 10), "10");
+        }
+    }
+}
+
+TEST(ParallelAsMade, MakesNoMoreOnceOneHasFailed) {
+    const ThreadLimit limit(2);
+    std::atomic<int> bodies = 0;
     const auto fail = [](std::int64_t i) {
         if (i == 70) throw Error(ErrorKind::Input, "seventy");
     };
-    EXPECT_THROW(parallelAsMade(100, nothing, fail), Error);
-    std::atomic<int> bodies = 0;
     EXPECT_THROW(parallelAsMade(100, fail, [&](std::int64_t) { ++bodies; }), Error);
-    EXPECT_LE(bodies, 70);
+    EXPECT_EQ(bodies, 70);
 }
 
 TEST(ParallelFor, StaysWithinTheLimit) {

@@ -82,21 +82,23 @@ INSTANTIATE_TEST_SUITE_P(Sizes, RealFft3OfSize, testing::Values(4, 6, 10, 12, 14
 
 TEST(RealFft3, InverseOfTheInnerPartIsThatPart) {
     constexpr int kSize = 16, kInner = 5, kFirst = 4;
-    const RealFft3& whole = RealFft3::get(kSize);
-    const RealFft3& part = RealFft3::get(kSize, 0, 0, kInner);
-    const FftBuffer a = whole.allocate();
-    const FftBuffer b = part.allocate();
-    for (std::size_t i = 0; i < whole.bufferSize(); ++i) a[i] = std::sin(0.37F * i * i);
-    std::copy_n(a.get(), whole.bufferSize(), b.get());
-    whole.forward(a.get());
-    whole.inverse(a.get());
-    part.forward(b.get());
-    part.inverse(b.get(), kFirst);
-    for (int x = kFirst; x < kFirst + kInner; ++x) {
-        for (int y = kFirst; y < kFirst + kInner; ++y) {
-            for (int z = 0; z < kSize; ++z) {
-                const int index = (x * whole.yCount() + y) * whole.zStride() + z;
-                EXPECT_NEAR(a[index], b[index], 1e-2) << x << " " << y << " " << z;
+    for (const SpectrumLayout layout : {SpectrumLayout::Half, SpectrumLayout::Packed}) {
+        const RealFft3& whole = RealFft3::get(kSize, 0, 0, 0, layout);
+        const RealFft3& part = RealFft3::get(kSize, 0, 0, kInner, layout);
+        const FftBuffer a = whole.allocate();
+        const FftBuffer b = part.allocate();
+        for (std::size_t i = 0; i < whole.bufferSize(); ++i) a[i] = std::sin(0.37F * i * i);
+        std::copy_n(a.get(), whole.bufferSize(), b.get());
+        whole.forward(a.get());
+        whole.inverse(a.get());
+        part.forward(b.get());
+        part.inverse(b.get(), kFirst);
+        for (int x = kFirst; x < kFirst + kInner; ++x) {
+            for (int y = kFirst; y < kFirst + kInner; ++y) {
+                for (int z = 0; z < kSize; ++z) {
+                    const int index = (x * whole.yCount() + y) * whole.zStride() + z;
+                    EXPECT_NEAR(a[index], b[index], 1e-2) << x << " " << y << " " << z;
+                }
             }
         }
     }

@@ -1,5 +1,7 @@
 #include "spectral/packed_filter.h"
 
+#include <bandvox/core/error.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,11 +17,11 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// What a transfer function is along each axis in turn.
+// What a frequency becomes, which is -n/2 < x, y, z ≤ n/2.
 using Response = std::function<Complex(int x, int y, int z)>;
 
 // The filter by its definition: of n³ samples, Σ_x f(x) h(y - x), where h is the sum of all
-// frequencies, those at n/2 with both signs.
+// frequencies.
 std::vector<double> filterDirectly(const std::vector<double>& samples, int n,
                                    const Response& response) {
     const auto index = [n](int x, int y, int z) { return (x * n + y) * n + z; };
@@ -63,9 +65,13 @@ std::vector<double> filterDirectly(const std::vector<double>& samples, int n,
     return filtered;
 }
 
+const RealFft3& packedFft(int n) {
+    return RealFft3::get(n, 3, 5, 0, SpectrumLayout::Packed);
+}
+
 // Filters random samples both ways, in a buffer with a margin, and holds one to the other.
 void expectSameAsDirect(int n, const PackedFilter& filter, const Response& response) {
-    const RealFft3& fft = RealFft3::get(n, 3, 5, 0, SpectrumLayout::Packed);
+    const RealFft3& fft = packedFft(n);
     const FftBuffer buffer = fft.allocate();
     std::mt19937 random(11);
     std::uniform_real_distribution<float> uniform(-1, 1);
@@ -80,7 +86,7 @@ void expectSameAsDirect(int n, const PackedFilter& filter, const Response& respo
     }
     const std::vector<double> expected = filterDirectly(samples, n, response);
     fft.forward(buffer.get());
-    filter.multiply(fft, buffer.get());
+    filter.multiply(buffer.get());
     fft.inverse(buffer.get());
     const double scale = 2.0 / (n * n * n);
     for (int x = 0, i = 0; x < n; ++x) {
@@ -98,8 +104,8 @@ class PackedFilterOfSize : public testing::TestWithParam<int> {};
 TEST_P(PackedFilterOfSize, WithoutAnEffectLeavesAllAsItWas) {
     const int n = GetParam();
     const auto one = [](int, int, int) { return 1.0; };
-    expectSameAsDirect(n, PackedFilter(n, one, true), one);
-    expectSameAsDirect(n, PackedFilter(n, one, false), one);
+    expectSameAsDirect(n, PackedFilter(packedFft(n), one, true), one);
+    expectSameAsDirect(n, PackedFilter(packedFft(n), one, false), one);
 }
 
 TEST_P(PackedFilterOfSize, OfMagnitudesAndAFactorAlongXEqualsTheDirectSum) {
@@ -111,22 +117,31 @@ TEST_P(PackedFilterOfSize, OfMagnitudesAndAFactorAlongXEqualsTheDirectSum) {
     std::vector<std::complex<float>> factors;
     const auto factor = [n](int x) { return Complex(1 + std::abs(x), 2 * x == n ? 0 : 0.3 * x); };
     for (int i = 0; i < n; ++i) factors.emplace_back(factor(i <= n / 2 ? i : i - n));
-    expectSameAsDirect(n, PackedFilter(n, transfer, true, factors), [&](int x, int y, int z) {
-        return factor(x) * transfer(std::abs(x), std::abs(y), std::abs(z));
+    expectSameAsDirect(n, PackedFilter(packedFft(n), transfer, true, factors),
+                       [&](int x, int y, int z) {
+                           return factor(x) * transfer(std::abs(x), std::abs(y), std::abs(z));
+                       });
+}
+
+// T(k) = T(-k), but not T(x, y, z) = T(-x, y, z).
+TEST_P(PackedFilterOfSize, OfASlantedTransferEqualsTheDirectSum) {
+    const int n = GetParam();
+    const auto transfer = [](int x, int y, int z) {
+        return std::cos(0.7 * x + 0.4 * y - 1.1 * z) + 0.2 * x * z;
+    };
+    // At n/2 both signs are as good.
+    const auto turned = [n](int i) { return 2 * std::abs(i) == n ? -i : i; };
+    expectSameAsDirect(n, PackedFilter(packedFft(n), transfer, false), [&](int x, int y, int z) {
+        return 0.5 * (transfer(x, y, z) + transfer(turned(x), turned(y), turned(z)));
     });
 }
 
-TEST_P(PackedFilterOfSize, OfASlantedTransferEqualsTheDirectSum) {
-    const int n = GetParam();
-    // T(k) = T(-k), but not T(x, y, z) = T(-x, y, z); 0 at n/2, where frequencies have no sign.
-    const auto transfer = [n](int x, int y, int z) {
-        if (std::max({std::abs(x), std::abs(y), std::abs(z)}) == n / 2) return 0.0;
-        return std::cos(0.7 * x + 0.4 * y - 1.1 * z) + 0.2 * x * z;
-    };
-    expectSameAsDirect(n, PackedFilter(n, transfer, false), transfer);
-}
-
 INSTANTIATE_TEST_SUITE_P(Sizes, PackedFilterOfSize, testing::Values(2, 4, 6, 8, 10));
+
+TEST(PackedFilter, RefusesAnotherLayout) {
+    const auto one = [](int, int, int) { return 1.0; };
+    EXPECT_THROW(PackedFilter(RealFft3::get(8), one, true), Error);
+}
 
 }  // namespace
 }  // namespace bandvox

@@ -26,7 +26,7 @@ std::vector<std::complex<float>> factorsAlongX(int side, TileFilter::Output outp
 }
 
 // H(|k|) over the kernel's transform along each axis; 0 at Nyquist, where frequencies have no sign.
-PackedFilter transferOf(const TilePlan& plan, TileFilter::Output output) {
+PackedFilter transferOf(const RealFft3& fft, const TilePlan& plan, TileFilter::Output output) {
     const int side = plan.side, half = side / 2;
     std::vector<double> kernel;
     for (int i = 0; i <= half; ++i) {
@@ -39,7 +39,7 @@ PackedFilter transferOf(const TilePlan& plan, TileFilter::Output output) {
         const double k = std::sqrt(static_cast<double>(x * x + y * y + z * z)) / side;
         return scale * plan.filter(k) / (kernel[x] * kernel[y] * kernel[z]);
     };
-    return {side, transfer, true, factorsAlongX(side, output)};
+    return {fft, transfer, true, factorsAlongX(side, output)};
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ TileFilter::TileFilter(const TilePlan& plan, Output output)
       mFirst(mShift + plan.halo),
       mFft(RealFft3::get(plan.side, mMargin, mShift + plan.kernel.paddedWidth() + 1,
                          plan.interior + 1, SpectrumLayout::Packed)),
-      mTransfer(transferOf(plan, output)) {}
+      mTransfer(transferOf(mFft, plan, output)) {}
 
 openvdb::Vec3d TileFilter::regionOffset() const {
     // Along x a difference at the first voxel reaches one voxel further back.
@@ -140,7 +140,7 @@ void TileFilter::movePairs(const openvdb::CoordBBox& nodes, float* part,
 void TileFilter::apply(float* buffer) const {
     fold(buffer);
     mFft.forward(buffer);
-    mTransfer.multiply(mFft, buffer);
+    mTransfer.multiply(buffer);
     mFft.inverse(buffer, mFirst);
 }
 

@@ -6,8 +6,11 @@
 #include <oneapi/tbb/task_group.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <exception>
 #include <memory>
+#include <mutex>
 #include <thread>
 
 // TBB is not built with the thread sanitizer, so the sanitizer does not see that tasks start
@@ -43,26 +46,43 @@ void parallelFor(std::int64_t count, const std::function<void(std::int64_t)>& bo
 
 void parallelAsMade(std::int64_t count, const std::function<void(std::int64_t)>& make,
                     const std::function<void(std::int64_t)>& body) {
-    [[maybe_unused]] char made = 0;
-    [[maybe_unused]] char finished = 0;
-    oneapi::tbb::task_group group;
-    try {
+    if (threadCount() == 1) {
         for (std::int64_t i = 0; i < count; ++i) {
             make(i);
-            BANDVOX_HAPPENS_BEFORE(&made);
-            group.run([&, i] {
-                BANDVOX_HAPPENS_AFTER(&made);
-                body(i);
-                BANDVOX_HAPPENS_BEFORE(&finished);
-            });
+            body(i);
         }
-    } catch (...) {
-        group.cancel();
-        group.wait();
-        throw;
+        return;
+    }
+    [[maybe_unused]] char made = 0;
+    [[maybe_unused]] char finished = 0;
+    // All before the first that failed are done, so that it is the same whoever was quicker.
+    std::atomic<std::int64_t> failed = count;
+    std::exception_ptr error;
+    std::mutex mutex;
+    const auto attempt = [&](std::int64_t i, const auto& work) {
+        try {
+            work(i);
+        } catch (...) {
+            const std::lock_guard<std::mutex> lock(mutex);
+            if (i >= failed) return;
+            failed = i;
+            error = std::current_exception();
+        }
+    };
+    oneapi::tbb::task_group group;
+    for (std::int64_t i = 0; i < failed; ++i) {
+        attempt(i, make);
+        if (i >= failed) break;
+        BANDVOX_HAPPENS_BEFORE(&made);
+        group.run([&, i] {
+            BANDVOX_HAPPENS_AFTER(&made);
+            if (i < failed) attempt(i, body);
+            BANDVOX_HAPPENS_BEFORE(&finished);
+        });
     }
     group.wait();
     BANDVOX_HAPPENS_AFTER(&finished);
+    if (error) std::rethrow_exception(error);
 }
 
 int threadCount() {

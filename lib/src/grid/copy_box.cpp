@@ -47,8 +47,8 @@ bool copyBox(const openvdb::tree::ValueAccessor<const openvdb::FloatTree, false>
 std::optional<float> valueOfLargeTiles(
     const openvdb::tree::ValueAccessor<const openvdb::FloatTree, false>& from,
     const openvdb::CoordBBox& box) {
-    // Values at this depth or above are those of tiles of 128³ voxels or more: each that a box
-    // meets which is no larger has one of its corners.
+    // Values at this depth or above are those of tiles of 128³ voxels or more. A box no larger than
+    // such a tile has a corner in each that it meets.
     constexpr int kLargeTile = 1, kSide = 128;
     const openvdb::Coord size = box.dim();
     if (std::max({size[0], size[1], size[2]}) > kSide) return std::nullopt;

@@ -111,7 +111,7 @@ void failNotFinite(const openvdb::FloatGrid& grid) {
 }
 
 void failNamed(const SceneObject& object, const Error& error) {
-    if (error.kind() == ErrorKind::Interrupted) throw error;
+    if (error.kind() == ErrorKind::Interrupted) throw;
     const std::string of = object.name.empty() ? "" : object.name + ": ";
     throw Error(error.kind(), of + error.what());
 }

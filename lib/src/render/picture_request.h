@@ -26,8 +26,8 @@ bool isAboveBackground(double iso, float background);
 double isoOf(const openvdb::FloatGrid& grid, const std::optional<DensityMetadata>& metadata,
              const std::optional<double>& iso);
 
-/// Throws an error about an object: what it says begins with the object's name, unless that is that
-/// the work was interrupted.
+/// Throws the error that is being handled as one about an object: what it says begins with the
+/// object's name, unless that is that the work was interrupted.
 [[noreturn]] void failNamed(const SceneObject& object, const Error& error);
 
 /// The shortest side of a voxel, world units.

@@ -225,6 +225,7 @@ SurfaceBlocks::SurfaceBlocks(const openvdb::FloatGrid& grid, double threshold,
 
 void SurfaceBlocks::markLargeTiles(const std::vector<openvdb::CoordBBox>& tiles,
                                    const Progress& progress) {
+    if (tiles.empty()) return;
     // Their own blocks fill whole nodes of the tree.
     static_assert(LeafParent::DIM % (kSide * BlockLeaf::DIM) == 0 && kSurfaceMargin <= kSide);
     const auto blocksOf = [](const openvdb::CoordBBox& voxels) {
@@ -240,7 +241,6 @@ void SurfaceBlocks::markLargeTiles(const std::vector<openvdb::CoordBBox>& tiles,
     const auto isOn = [](bool /*value*/) { return true; };
     TileShells<openvdb::MaskTree> shells(mBlocks, progress);
     for (const openvdb::CoordBBox& tile : tiles) shells.countLeaves(blocksOf(tile), isOn);
-    if (tiles.empty()) return;
     constexpr double kListed = sizeof(Group) + sizeof(void*);  // of a leaf, in lists of them
     requireMemory(shells.bytes(kListed), "the surface of the grid's tiles");
     openvdb::tree::ValueAccessor<openvdb::MaskTree> blocks(mBlocks);

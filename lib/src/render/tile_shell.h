@@ -71,12 +71,12 @@ class TileShells {
     /// Counts what forEachPart will make of the tree, if a leaf is made for each part.
     template <typename Covers>
     void countLeaves(const openvdb::CoordBBox& tile, const Covers& covers) {
-        count(tile, covers, 1);
+        count(tile, covers, true);
     }
     /// The same if no leaf is made, but whole leaves become tiles.
     template <typename Covers>
     void countNodes(const openvdb::CoordBBox& tile, const Covers& covers) {
-        count(tile, covers, 0);
+        count(tile, covers, false);
     }
 
     /// Bytes of what was counted. `leafBytes`: of a leaf, beyond its own size.
@@ -113,7 +113,7 @@ class TileShells {
     }
 
     template <typename Covers>
-    void count(const openvdb::CoordBBox& tile, const Covers& covers, double leaves) {
+    void count(const openvdb::CoordBBox& tile, const Covers& covers, bool withLeaves) {
         for (const ShellPiece& piece : shellAround(tile)) {
             const bool isFace = piece.outward.asVec3i().lengthSqr() == 1;
             forEachCube(piece.box, Node::DIM, [&](const openvdb::CoordBBox& inNode) {
@@ -124,7 +124,7 @@ class TileShells {
                 if (!isThere && isFace) {
                     const openvdb::Coord first = inNode.min() >> Leaf::LOG2DIM;
                     const openvdb::Coord last = inNode.max() >> Leaf::LOG2DIM;
-                    mLeaves += leaves * double(openvdb::CoordBBox(first, last).volume());
+                    if (withLeaves) mLeaves += double(openvdb::CoordBBox(first, last).volume());
                     return;
                 }
                 forEachCube(inNode, Leaf::DIM, [&](const openvdb::CoordBBox& part) {
@@ -133,7 +133,7 @@ class TileShells {
                         return;
                     }
                     if (!isFace && isOfNeighbour(part.min(), piece.outward, covers)) return;
-                    mLeaves += leaves;
+                    if (withLeaves) ++mLeaves;
                 });
             });
         }

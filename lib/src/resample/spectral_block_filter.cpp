@@ -155,14 +155,14 @@ PackedFilter SpectralBlockFilter::transferOf(const LatticeFilter& filter) const 
         return scale * reading[std::abs(x)] * reading[std::abs(y)] * reading[std::abs(z)] *
                filter(mMap, k);
     };
-    return {side, transfer, false};
+    return {mFft, transfer, false};
 }
 
 void SpectralBlockFilter::apply(const openvdb::Coord& block, Scratch& scratch,
                                 std::span<float> values) const {
     float* cube = scratch.cube.get();
     mFft.forward(cube);
-    mTransfer.multiply(mFft, cube);
+    mTransfer.multiply(cube);
     mFft.inverse(cube);
     if (mIsDiagonal && !mIsAligned) {
         const openvdb::Coord low = sourceBox(block).min();

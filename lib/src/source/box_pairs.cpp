@@ -34,8 +34,7 @@ void BoxPairs::findMeeting(const Leaf& a, const Leaf& b, const Box& boxOfB,
         }
         return bits;
     };
-    // Those that share a settled corner; as kNoIndex stands for others in b, in a something else
-    // has to.
+    // Those of a leaf that have one of three settled corners.
     const auto findSettled = [](const Leaf& leaf, const std::uint32_t* corners) {
         std::uint32_t bits = 0;
         for (int k = 0; k < kLeaf; ++k) {
@@ -55,6 +54,8 @@ void BoxPairs::findMeeting(const Leaf& a, const Leaf& b, const Box& boxOfB,
         const float high[] = {a.high[0][i], a.high[1][i], a.high[2][i]};
         meets[i] = findBits(b, low, high);
         if (meets[i] == 0) continue;
+        // The leaves have kNoIndex in place of all corners that are not settled, which are not the
+        // same for that: here stands something else.
         std::uint32_t corners[3];
         for (int k = 0; k < 3; ++k) {
             corners[k] = a.settled[k][i] == kNoIndex ? kNoIndex - 1 : a.settled[k][i];

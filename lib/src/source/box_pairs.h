@@ -11,7 +11,8 @@
 
 namespace bandvox {
 
-/// Finds the pairs of triangles of a mesh whose boxes, along the axes, meet.
+/// Finds the pairs of triangles of a mesh whose boxes, along the axes, meet, but for those of which
+/// is known already what they are to each other.
 ///
 /// The triangles are put along a curve that fills space, and so many that follow each other share a
 /// leaf; above the leaves is a tree of boxes. Boxes are kept in single precision: rounding never
@@ -21,8 +22,8 @@ class BoxPairs {
     using Pair = std::pair<std::uint32_t, std::uint32_t>;
     static constexpr int kLeaf = 16;
 
-    /// `settled`, if not empty, has a number for each point of the mesh; triangles that share one
-    /// which is not 0 make no pair.
+    /// `settled`, if not empty, has a number for each point of the mesh. Of triangles around a
+    /// point whose number is not 0 all is known: they make no pair.
     explicit BoxPairs(const Mesh& mesh, const std::vector<std::uint8_t>& settled = {});
 
     std::size_t leafCount() const { return mLeaves.size(); }

@@ -32,7 +32,7 @@ int paddedRow(int length) {
 // conjugate of Z(n/2 - k). `mirrored` has room for n numbers.
 BANDVOX_FOR_EACH_INSTRUCTION_SET
 void unpackRow(float* row, int n, const float* turns, float* mirrored) {
-    mirrorPacked(row, n, mirrored);
+    turnedConjugates(row, n, mirrored);
     const float nyquist = row[0] - row[1];
     for (int k = 0; k < n / 2; ++k) {
         const float re = row[2 * k], im = row[2 * k + 1];
@@ -52,7 +52,7 @@ void unpackRow(float* row, int n, const float* turns, float* mirrored) {
 BANDVOX_FOR_EACH_INSTRUCTION_SET
 void packRow(float* row, int n, const float* turns, float* mirrored) {
     const float zero = row[0], nyquist = row[n];
-    mirrorPacked(row, n, mirrored);
+    turnedConjugates(row, n, mirrored);
     for (int k = 0; k < n / 2; ++k) {
         const float re = row[2 * k], im = row[2 * k + 1];
         const float mirroredRe = mirrored[2 * k + 1], mirroredIm = -mirrored[2 * k];
@@ -148,7 +148,7 @@ void RealFft3::forward(float* data) const {
         fftwf_execute_dft(plan.get(), complex, complex);
     };
     // Transform each plane of constant x along z, then y, while it is in the cache.
-    std::vector<float> mirrored(mSize);
+    std::vector<float> mirrored(mLayout == SpectrumLayout::Half ? mSize : 0);
     for (int x = 0; x < mSize; ++x) {
         float* rows = data + x * plane;
         execute(mPlans->forwardZ, rows);
@@ -169,7 +169,7 @@ void RealFft3::inverse(float* data, int first) const {
         fftwf_execute_dft(plan.get(), complex, complex);
     };
     for (int y = 0; y < mSize; ++y) execute(mPlans->inverseX, data + y * mZStride);
-    std::vector<float> mirrored(mSize);
+    std::vector<float> mirrored(mLayout == SpectrumLayout::Half ? mSize : 0);
     for (int x = first; x < first + mInner; ++x) {
         execute(mPlans->inverseY, data + x * plane);
         float* rows = data + x * plane + static_cast<std::size_t>(first) * mZStride;

@@ -3,14 +3,23 @@
 #include "core/instruction_sets.h"
 #include "spectral/packed_row.h"
 
+#include <bandvox/core/error.h>
+#include <bandvox/core/parallel.h>
+
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstdlib>
 #include <numbers>
+#include <string>
 #include <utility>
 
 namespace bandvox {
 
 namespace {
+
+constexpr int kLargestSide = 512;
 
 // The weights are those of row[k] and mirrored[k], n/2 each.
 [[gnu::always_inline]] inline void mixRow(float* row, const float* mirrored, const float* weights,
@@ -31,59 +40,79 @@ void mixRows(float* a, float* b, const float* weightsOfA, const float* weightsOf
              std::complex<float> factor, float* scratch) {
     float* mirroredA = scratch;
     float* mirroredB = scratch + n;
-    mirrorPacked(a, n, mirroredA);
-    mirrorPacked(b, n, mirroredB);
+    turnedConjugates(a, n, mirroredA);
+    turnedConjugates(b, n, mirroredB);
     mixRow(a, mirroredB, weightsOfA, n, factor);
     if (a != b) mixRow(b, mirroredA, weightsOfB, n, std::conj(factor));
 }
 
 }  // namespace
 
-PackedFilter::PackedFilter(int n, const Transfer& transfer, bool isEven,
+PackedFilter::PackedFilter(const RealFft3& fft, const Transfer& transfer, bool isEven,
                            std::vector<std::complex<float>> factors)
-    : mSize(n), mIsEven(isEven), mFactors(std::move(factors)) {
-    const int half = n / 2;
-    const int count = isEven ? half + 1 : n;
+    : mFft(fft), mIsEven(isEven), mFactors(std::move(factors)) {
+    const int n = fft.size(), half = n / 2;
+    if (fft.layout() != SpectrumLayout::Packed || n > kLargestSide) {
+        throw Error(ErrorKind::Runtime,
+                    "a filter of " + std::to_string(n) +
+                        " samples along an axis; expected a packed spectrum of at most " +
+                        std::to_string(kLargestSide));
+    }
+    std::vector<double> sine, cosine;
+    for (int z = 0; z < half; ++z) {
+        sine.push_back(std::sin(2 * std::numbers::pi * z / n));
+        cosine.push_back(std::cos(2 * std::numbers::pi * z / n));
+    }
     const auto signedOf = [&](int i) { return i <= half ? i : i - n; };
-    const auto mirroredOf = [&](int i) { return isEven || i == half ? i : -i; };
+    // -n/2 is n/2, and of what is even -x is x.
+    const auto mirrored = [&](int i) { return isEven || i == half ? i : -i; };
+    const auto turned = [&](int i) { return std::abs(i) == half ? -i : i; };
+    const auto valueAt = [&](int x, int y, int z) {
+        const bool hasSign = std::abs(x) != half && std::abs(y) != half && std::abs(z) != half;
+        const double value = transfer(x, y, z);
+        if (isEven || hasSign) return value;
+        return 0.5 * (value + transfer(turned(x), turned(y), turned(z)));
+    };
+    const int count = isEven ? half + 1 : n;
     mWeights.resize(static_cast<std::size_t>(count) * count * n);
-    float* weights = mWeights.data();
-    for (int i = 0; i < count; ++i) {
+    parallelFor(count, [&](std::int64_t i) {
+        float* weights = mWeights.data() + static_cast<std::size_t>(i) * count * n;
+        const int x = signedOf(static_cast<int>(i));
         for (int j = 0; j < count; ++j, weights += n) {
-            const int x = signedOf(i), y = signedOf(j);
+            const int y = signedOf(j);
             for (int z = 0; z < half; ++z) {
-                const double own = transfer(x, y, z);
-                const double other = transfer(mirroredOf(x), mirroredOf(y), half - z);
+                const double own = valueAt(x, y, z);
+                const double other = valueAt(mirrored(x), mirrored(y), half - z);
                 const double mean = 0.5 * (own + other), less = 0.5 * (own - other);
-                const double angle = 2 * std::numbers::pi * z / n;
-                weights[z] = static_cast<float>(mean - less * std::sin(angle));
-                weights[half + z] = static_cast<float>(less * std::cos(angle));
+                weights[z] = static_cast<float>(mean - less * sine[z]);
+                weights[half + z] = static_cast<float>(less * cosine[z]);
             }
         }
-    }
+    });
 }
 
 const float* PackedFilter::weights(int x, int y) const {
-    const int half = mSize / 2;
-    const auto place = [&](int i) { return mIsEven && i > half ? mSize - i : i; };
-    const std::size_t count = mIsEven ? half + 1 : mSize;
-    return mWeights.data() + (place(x) * count + place(y)) * mSize;
+    const int n = mFft.size(), half = n / 2;
+    const auto place = [&](int i) { return mIsEven && i > half ? n - i : i; };
+    const std::size_t count = mIsEven ? half + 1 : n;
+    return mWeights.data() + (place(x) * count + place(y)) * n;
 }
 
-void PackedFilter::multiply(const RealFft3& fft, float* spectrum) const {
-    std::vector<float> scratch(2 * static_cast<std::size_t>(mSize));
+void PackedFilter::multiply(float* spectrum) const {
+    const int n = mFft.size();
+    std::array<float, 2 * kLargestSide> scratch;
     const auto row = [&](int x, int y) {
-        return spectrum + (static_cast<std::size_t>(x) * fft.yCount() + y) * fft.zStride();
+        return spectrum + (static_cast<std::size_t>(x) * mFft.yCount() + y) * mFft.zStride();
     };
-    const auto mirrored = [&](int i) { return i == 0 ? 0 : mSize - i; };
-    for (int x = 0; x <= mSize / 2; ++x) {
+    const auto mirrored = [&](int i) { return i == 0 ? 0 : n - i; };
+    for (int x = 0; x <= n / 2; ++x) {
         const std::complex<float> factor = mFactors.empty() ? 1.0F : mFactors[x];
         const int otherX = mirrored(x);
         // Of planes that are their own mirrors, each pair of rows once.
-        const int yEnd = x == otherX ? mSize / 2 + 1 : mSize;
+        const int yEnd = x == otherX ? n / 2 + 1 : n;
         for (int y = 0; y < yEnd; ++y) {
             const int otherY = mirrored(y);
-            mixRows(row(x, y), row(otherX, otherY), weights(x, y), weights(otherX, otherY), mSize,
+            mixRows(row(x, y), row(otherX, otherY), weights(x, y), weights(otherX, otherY), n,
                     factor, scratch.data());
         }
     }

@@ -17,24 +17,26 @@ namespace bandvox {
 /// so that nothing has to be unpacked.
 class PackedFilter {
   public:
-    /// What is asked for a frequency: cycles per n samples, with their signs; n/2 for Nyquist.
+    /// What is asked for a frequency: cycles per n samples, with their signs. At n/2, where they
+    /// have none, it is asked for both, and the mean is taken. From several threads.
     using Transfer = std::function<double(int x, int y, int z)>;
 
-    /// `isEven`: T depends on the magnitudes of x, y and z alone, and is asked for no others.
-    /// `factors`: D(x), 0 ≤ x < n; none for 1.
-    PackedFilter(int n, const Transfer& transfer, bool isEven,
+    /// For spectra that lie as in `fft`, of up to 512³ samples. `isEven`: T depends on the
+    /// magnitudes of x, y and z alone, and is asked for no others. `factors`: D(x), 0 ≤ x < n; none
+    /// for 1. D(n/2) is real, or T is 0 there. Throws Error(ErrorKind::Runtime) for another layout
+    /// or more samples.
+    PackedFilter(const RealFft3& fft, const Transfer& transfer, bool isEven,
                  std::vector<std::complex<float>> factors = {});
 
-    /// Multiplies a spectrum that lies as in `fft`, whose layout is packed.
-    void multiply(const RealFft3& fft, float* spectrum) const;
+    void multiply(float* spectrum) const;
 
   private:
     const float* weights(int x, int y) const;
 
-    int mSize;
+    const RealFft3& mFft;
     bool mIsEven;
     std::vector<std::complex<float>> mFactors;
-    std::vector<float> mWeights;  // [x][y][2][n/2]: of Z(k), then of conj Z(k')
+    std::vector<float> mWeights;  // [x][y][2][n/2]: of Z(k), then of i conj Z(k')
 };
 
 }  // namespace bandvox

@@ -14,9 +14,9 @@ namespace bandvox {
 /// started and is rethrown here.
 void parallelFor(std::int64_t count, const std::function<void(std::int64_t)>& body);
 
-/// Calls `make(i)` for each i in [0, count), one after another on this thread, and `body(i)` once
-/// for each, on the threads of TBB, after `make(i)` has returned and while others are being made.
-/// Else as parallelFor; an exception of `make` is rethrown, too.
+/// Calls `make(i)` for each i in [0, count), one after another on this thread, and `body(i)` after
+/// it, on the threads of TBB while later ones are being made. What holds for parallelFor's results
+/// holds here. An exception of either ends the making; that of the lowest i is rethrown.
 void parallelAsMade(std::int64_t count, const std::function<void(std::int64_t)>& make,
                     const std::function<void(std::int64_t)>& body);
 
