@@ -39,8 +39,8 @@ void BoxPairs::findMeeting(const Leaf& a, const Leaf& b, const Box& boxOfB,
         std::uint32_t bits = 0;
         for (int k = 0; k < kLeaf; ++k) {
             bool same = false;
-            for (int i = 0; i < 3; ++i) {
-                for (int j = 0; j < 3; ++j) same |= leaf.settled[i][k] == corners[j];
+            for (const auto& settled : leaf.settled) {
+                for (int j = 0; j < 3; ++j) same |= settled[k] == corners[j];
             }
             bits |= same ? 1U << k : 0U;
         }
