@@ -27,6 +27,12 @@ int paddedRow(int length) {
     return padded;
 }
 
+// In place, on the complex numbers that begin there.
+void execute(const FftwPlan<float>& plan, float* at) {
+    auto* complex = reinterpret_cast<fftwf_complex*>(at);
+    fftwf_execute_dft(plan.get(), complex, complex);
+}
+
 // Of the transform Z of pairs of samples, as complex numbers, makes that of the samples, up to
 // Nyquist: X(k) = E + u S, where E and S are half the sum and the difference of Z(k) and the
 // conjugate of Z(n/2 - k). `mirrored` has room for n numbers.
@@ -143,10 +149,6 @@ FftBuffer RealFft3::allocate() const {
 
 void RealFft3::forward(float* data) const {
     const std::size_t plane = static_cast<std::size_t>(mYCount) * mZStride;
-    const auto execute = [](const FftwPlan<float>& plan, float* at) {
-        auto* complex = reinterpret_cast<fftwf_complex*>(at);
-        fftwf_execute_dft(plan.get(), complex, complex);
-    };
     // Transform each plane of constant x along z, then y, while it is in the cache.
     std::vector<float> mirrored(mLayout == SpectrumLayout::Half ? mSize : 0);
     for (int x = 0; x < mSize; ++x) {
@@ -164,10 +166,6 @@ void RealFft3::forward(float* data) const {
 
 void RealFft3::inverse(float* data, int first) const {
     const std::size_t plane = static_cast<std::size_t>(mYCount) * mZStride;
-    const auto execute = [](const FftwPlan<float>& plan, float* at) {
-        auto* complex = reinterpret_cast<fftwf_complex*>(at);
-        fftwf_execute_dft(plan.get(), complex, complex);
-    };
     for (int y = 0; y < mSize; ++y) execute(mPlans->inverseX, data + y * mZStride);
     std::vector<float> mirrored(mLayout == SpectrumLayout::Half ? mSize : 0);
     for (int x = first; x < first + mInner; ++x) {
